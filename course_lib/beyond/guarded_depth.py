@@ -14,15 +14,8 @@ from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
-from course_lib.beyond.being_lost import (
-    NOTHING_MEASURED,
-    Agreement,
-    Debt,
-    TrackStatus,
-    agreement,
-    is_known,
-    judge_track,
-)
+from course_lib.beyond import being_lost
+from course_lib.beyond.being_lost import Agreement, Debt, TrackStatus, agreement
 from course_lib.beyond.guarded_frames import Fault, FrameCheck
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.depth_mcl.likelihood import checked_image
@@ -79,7 +72,7 @@ class GuardedLocalizer:
     def _move(self) -> Estimate | AnnealedEstimate:
         """Return the filter's estimate after a frame of which nothing is used."""
         self._debt.add()
-        self._agreements.append(NOTHING_MEASURED)
+        self._agreements.append(being_lost.NOTHING_MEASURED)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", NoMeasurementWarning)  # the outcome says it
             self._last = self.localizer.step(np.full(self._camera.shape, np.nan))
@@ -92,8 +85,8 @@ class GuardedLocalizer:
             renderer = self.localizer.renderer
             measured = renderer.render_points(self._camera.points(depth))
             self._agreements.append(agreement(measured, renderer.render(self._last.state)[0]))
-            status = judge_track(self._agreements)[-1]
-            if status == "tracked" and not is_known(self._last.error_covariance):
+            status = being_lost.judge_track(self._agreements)[-1]
+            if status == "tracked" and not being_lost.is_known(self._last.error_covariance):
                 return "doubtful"
         if status == "no measurement":  # all of it lies outside the camera's planes once it is projected
             return "no return"

@@ -12,6 +12,7 @@ from functools import partial
 from typing import Literal
 
 import numpy as np
+from scipy.special import softmax
 from scipy.stats import norm
 
 from course_lib.depth_mcl.likelihood import Weighting, paired_pixels, valid_pixels
@@ -89,9 +90,7 @@ def disparity_log_likelihood(measured: np.ndarray, simulated: np.ndarray) -> np.
 
 def weights_from_log_likelihood(log_likelihood: np.ndarray) -> np.ndarray:
     """Weights `(N,)` proportional to exp(log-likelihood), summing to one; the greatest is subtracted first."""
-    values = np.asarray(log_likelihood, dtype=np.float64)
-    w = np.exp(values - values.max())
-    return w / w.sum()
+    return softmax(np.asarray(log_likelihood, dtype=np.float64))
 
 
 # Form -> (log-likelihood of every particle, which pixels it compares).

@@ -24,22 +24,8 @@ from pathlib import Path
 
 import numpy as np
 
-from course_lib.depth_mcl.sequence_files import (
-    UNITS_PER_METRE,
-    SequenceError,
-    depth_files,
-    read_depth_png,
-    read_gravity,
-    read_numbers,
-    read_path_on_floor,
-    read_poses,
-    read_times,
-    read_tum_folder,
-    read_up,
-    require_same_frames,
-    write_depth_png,
-    write_tum,
-)
+from course_lib.depth_mcl import sequence_files
+from course_lib.depth_mcl.sequence_files import UNITS_PER_METRE, SequenceError, read_depth_png
 from course_lib.files import is_given, staging_dir
 from course_lib.geometry import UP_AXES
 from course_lib.rendering.camera import DepthCamera
@@ -140,17 +126,17 @@ def read_sequence(folder: str | Path, units_per_metre: float = UNITS_PER_METRE) 
             f"{units_per_metre!r}"
         )
     if is_given(folder / "depth.txt"):
-        images, times, camera_to_world = read_tum_folder(folder)
+        images, times, camera_to_world = sequence_files.read_tum_folder(folder)
         frames = sorted(images)
     elif is_given(folder / "poses.txt"):
-        images = depth_files(folder)
-        frames, camera_to_world = read_poses(folder / "poses.txt")
-        require_same_frames(folder, frames, sorted(images))
-        times = read_times(folder, camera_to_world)
+        images = sequence_files.depth_files(folder)
+        frames, camera_to_world = sequence_files.read_poses(folder / "poses.txt")
+        sequence_files.require_same_frames(folder, frames, sorted(images))
+        times = sequence_files.read_times(folder, camera_to_world)
     else:
-        images = depth_files(folder)
+        images = sequence_files.depth_files(folder)
         frames, times, camera_to_world = sorted(images), None, None
-    intrinsics = read_numbers(folder / "intrinsics.txt")
+    intrinsics = sequence_files.read_numbers(folder / "intrinsics.txt")
     if intrinsics.shape != (3, 3):
         raise SequenceError(f"{folder / 'intrinsics.txt'} must hold a 3 x 3 matrix; got {intrinsics.shape}")
     image_shape = read_depth_png(images[frames[0]]).shape
@@ -159,8 +145,9 @@ def read_sequence(folder: str | Path, units_per_metre: float = UNITS_PER_METRE) 
     except ValueError as error:
         raise SequenceError(f"{folder / 'intrinsics.txt'}: {error}") from error
     return DepthSequence(
-        folder, frames, [images[f] for f in frames], camera_to_world, intrinsics, image_shape, read_up(folder),
-        times, read_path_on_floor(folder), units_per_metre, read_gravity(folder, frames),
+        folder, frames, [images[f] for f in frames], camera_to_world, intrinsics, image_shape,
+        sequence_files.read_up(folder), times, sequence_files.read_path_on_floor(folder), units_per_metre,
+        sequence_files.read_gravity(folder, frames),
     )  # fmt: skip
 
 
@@ -199,12 +186,12 @@ def write_sequence(
             )
         (new / "depth").mkdir()
         for frame, depth in zip(frames, depths, strict=True):
-            write_depth_png(new / "depth" / f"{frame:06d}.png", depth)
+            sequence_files.write_depth_png(new / "depth" / f"{frame:06d}.png", depth)
         np.savetxt(new / "intrinsics.txt", intrinsics, fmt="%.6f", header="K, pixel centres at integer coordinates")
         if up is not None:
             (new / "up.txt").write_text(up + "\n")
         if times is not None:
-            write_tum(new / "groundtruth.txt", times, camera_to_world)
+            sequence_files.write_tum(new / "groundtruth.txt", times, camera_to_world)
         if path_on_floor is not None:
             told = f"x y z, metres; {len(path_on_floor)} rows"
             np.savetxt(new / "path_on_floor.txt", path_on_floor, fmt="%.4f", header=told)

@@ -14,14 +14,8 @@ import numpy as np
 from course_lib.experiments.room import SOURCES, localize_pair
 from course_lib.experiments.room_evaluation import PoseOutcome, match_detections, outcome
 from course_lib.files import temporary_folder
-from course_lib.simulation.room.look_alike_recording import (
-    RecordingModels,
-    WalkModel,
-    experiment_of,
-    photograph_room,
-    photograph_walks,
-    surveyed_room,
-)
+from course_lib.simulation.room import look_alike_recording
+from course_lib.simulation.room.look_alike_recording import RecordingModels, WalkModel, experiment_of, surveyed_room
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
 from course_lib.simulation.room.scene import Room
 from course_lib.spherical_stereo.detection.detector import YoloDetector
@@ -99,7 +93,8 @@ def photographed_pairs(
 ) -> Iterator[tuple[int, SemanticLocalizer, StereoPair]]:
     """Photograph a room at both heights; yield the experiment's number, the localizer, and each pair."""
     with temporary_folder() as temporary:
-        for number, folder in enumerate(photograph_room(temporary, room, seed, poses, models), start=1):
+        folders = look_alike_recording.photograph_room(temporary, room, seed, poses, models)
+        for number, folder in enumerate(folders, start=1):
             recording = read_stereo_recording(folder)
             options = {"reject_implausible": False} | options  # the paper's method
             localizer = SemanticLocalizer(recording.rig, semantic_map, detector, **options)
@@ -114,7 +109,8 @@ def observe_views(seed: int, poses: int, network: Sequence, views: int) -> list[
     """
     detector, (room, semantic_map), sequences = loaded(network), surveyed_room(seed, MODELS), []
     with temporary_folder() as folder:
-        for k, walk in enumerate(photograph_walks(folder, room, seed, poses, views - 1, MODELS, WalkModel())):
+        walks = look_alike_recording.photograph_walks(folder, room, seed, poses, views - 1, MODELS, WalkModel())
+        for k, walk in enumerate(walks):
             localizer = SemanticLocalizer(rig_of_walk(k), semantic_map, detector, reject_implausible=False)
             seen = []
             for view in walk:

@@ -13,18 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.beyond.look_alikes.matchers import matcher
-from course_lib.experiments.room_evaluation import (
-    INCORRECT,
-    NO_OBJECT,
-    PoseOutcome,
-    counts_as_object,
-    identify_detections,
-    median,
-    outcome,
-    summary,
-    true_landmarks_of,
-    wrong_pairs,
-)
+from course_lib.experiments import room_evaluation
+from course_lib.experiments.room_evaluation import INCORRECT, NO_OBJECT, PoseOutcome, median, outcome, summary
 from course_lib.experiments.room_tables import tables
 from course_lib.experiments.runner import Outcome, Runner
 from course_lib.geometry import wrap_angle
@@ -113,7 +103,7 @@ def _summarize(experiments: dict, summaries: dict, semantic_map: SemanticMap, ba
         "akaze_disparities": range_errors(from_images, semantic_map, baseline, "disparity"),
     }
     incorrect = [one for one in from_images if one.outcome.kind == INCORRECT]
-    wrong = [len(wrong_pairs(one.localization, one.true_landmarks)) for one in incorrect]
+    wrong = [len(room_evaluation.wrong_pairs(one.localization, one.true_landmarks)) for one in incorrect]
     used = [len(one.localization.used_pairs) for one in incorrect]
     return {
         "poses": len(from_images) // 2,
@@ -155,7 +145,7 @@ def pose_columns(true_pose: Sequence[float], found: Localization, judged: PoseOu
 
 def exact_detections(objects: Sequence[TrueObject], image: np.ndarray) -> tuple[list[Detection], list[int]]:
     """Return what a perfect detector would report of an image `(H, W, 3)` BGR, and the object each detection shows."""
-    chosen = [one for one in objects if counts_as_object(one, image.shape[1])]
+    chosen = [one for one in objects if room_evaluation.counts_as_object(one, image.shape[1])]
     colours = [mean_hue_saturation(image, one.visible_box) for one in chosen]
     detections = [Detection(a.label, 1.0, a.visible_box, *colour) for a, colour in zip(chosen, colours, strict=True)]
     return detections, [one.number for one in chosen]
@@ -170,14 +160,14 @@ def localize_pair(pair: StereoPair, localizer: SemanticLocalizer, source: str = 
         found = localizer.localize(*images)
         seconds = time.perf_counter() - start
         seen = (found.upper_detections, pair.upper_objects), (found.lower_detections, pair.lower_objects)
-        upper, lower = (identify_detections(*one, width) for one in seen)
+        upper, lower = (room_evaluation.identify_detections(*one, width) for one in seen)
     else:
         exact = [exact_detections(*one) for one in zip((pair.upper_objects, pair.lower_objects), images, strict=True)]
         upper, lower = (tuple(numbers) for _, numbers in exact)
         matches = [(i, lower.index(number)) for i, number in enumerate(upper) if number in lower]
         found = localizer.localize_detections(exact[0][0], exact[1][0], matches, (width, height))
         seconds = time.perf_counter() - start
-    landmarks = true_landmarks_of(found, upper, lower, len(localizer.semantic_map))
+    landmarks = room_evaluation.true_landmarks_of(found, upper, lower, len(localizer.semantic_map))
     judged = outcome(found, pair.pose, landmarks)
     return PairResult(pair, found, judged, landmarks, upper, lower, (width, height), seconds)
 

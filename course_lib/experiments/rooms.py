@@ -9,19 +9,12 @@ from itertools import groupby, product
 
 import numpy as np
 
+from course_lib.experiments import room_evaluation
 from course_lib.experiments.intervals import share_intervals, wilson_percent
 from course_lib.experiments.look_alikes import answer_tables, answers_summary
 from course_lib.experiments.observed_rooms import JudgedPose, judged_poses, observe_room, observe_views
 from course_lib.experiments.room import SOURCES, pose_columns
-from course_lib.experiments.room_evaluation import (
-    KINDS,
-    NO_OBJECT,
-    PAPER_TABLE_3,
-    PAPER_TABLE_4,
-    PAPER_TABLE_5,
-    summary,
-    wrong_pairs,
-)
+from course_lib.experiments.room_evaluation import KINDS, NO_OBJECT, summary
 from course_lib.experiments.runner import Outcome, Runner
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
 
@@ -33,7 +26,7 @@ METHODS: dict[str, dict] = {
     "library": {"reject_implausible": True},
     "as_printed": {"distance_term": "as_printed", "reject_implausible": False},
 }
-PAPER = {1: PAPER_TABLE_3, 2: PAPER_TABLE_4}
+PAPER = {1: room_evaluation.PAPER_TABLE_3, 2: room_evaluation.PAPER_TABLE_4}
 PAPER_POSES = 20
 WORDS = {
     "images": "images",
@@ -132,7 +125,7 @@ def wrong_pair_causes(rooms: Sequence[dict], judged: Sequence[JudgedPose]) -> di
     alike = {room["seed"]: room["look_alike"]["label"] for room in rooms}
     causes = {source: {"poses": 0, "look_alikes": 0, "others": 0, "nothing": 0} for source in SOURCES}
     for one in (one for one in judged if one.method == "paper"):
-        wrong, found = wrong_pairs(one.localization, one.true_landmarks), causes[one.source]
+        wrong, found = room_evaluation.wrong_pairs(one.localization, one.true_landmarks), causes[one.source]
         found["poses"] += bool(wrong)
         for observation, _, shown in wrong:
             label = one.localization.observations[observation].label
@@ -222,7 +215,7 @@ def _shares(values: dict) -> str:
 
 
 def _paper_shares(number: int) -> str:
-    values = dict(PAPER_TABLE_5[number])
+    values = dict(room_evaluation.PAPER_TABLE_5[number])
     for kind in KINDS:
         hits = round(values[f"{kind}_percent"] * PAPER_POSES / 100)
         values |= {f"{kind}_wilson_percent": wilson_percent(hits, PAPER_POSES), f"{kind}_rooms_percent": None}

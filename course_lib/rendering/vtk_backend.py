@@ -124,7 +124,7 @@ class VtkBackend:
         self._draw_only(poses)
         self._make_room(len(poses))
         for tile, pose in zip(self._tiles, poses, strict=False):
-            _place(tile.GetActiveCamera(), pose[:3, :3], pose[:3, 3] - anchor)
+            place_camera(tile.GetActiveCamera(), pose[:3, :3], pose[:3, 3] - anchor)
         self._draw_and_read(self._tiles[: len(poses)], out)
 
     def render_points(self, points: np.ndarray) -> np.ndarray:
@@ -179,7 +179,7 @@ class VtkBackend:
         try:
             self._window = window = off_screen_window()
             self._points_tile = self._new_tile(_plain_actor(self._points_data))
-            _place(self._points_tile.GetActiveCamera(), np.eye(3), np.zeros(3))
+            place_camera(self._points_tile.GetActiveCamera(), np.eye(3), np.zeros(3))
             self._make_room(0)
             window.Render()
             if not window.SupportsOpenGL() or window.GetDepthBufferSize() < 24:
@@ -283,7 +283,7 @@ def _plain_actor(data: vtkPolyData) -> vtkActor:
     return actor
 
 
-def _place(vtk_camera: object, rotation: np.ndarray, position: np.ndarray) -> None:
+def place_camera(vtk_camera: object, rotation: np.ndarray, position: np.ndarray) -> None:
     """Put a VTK camera at a position `(3,)`; the columns of `rotation` `(3, 3)` are its right, down and forward."""
     vtk_camera.SetPosition(*position)
     vtk_camera.SetFocalPoint(*(position + rotation[:, 2]))

@@ -27,13 +27,8 @@ from course_lib.beyond.look_alikes.evidence import (
 from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis, Scene, fit_poses, pair_poses, scene_of
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from course_lib.spherical_stereo.semantic_map.association import (
-    Association,
-    Observation,
-    PenaltyWeights,
-    association_of,
-    penalty_table,
-)
+from course_lib.spherical_stereo.semantic_map import association
+from course_lib.spherical_stereo.semantic_map.association import Association, Observation, PenaltyWeights
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 SAME_POSE_M, SAME_POSE_RAD = 0.5, np.deg2rad(10.0)  # metres, radians: two poses that are nearer are one answer
@@ -82,7 +77,7 @@ def associate_consistent(
     """
     if not 0 <= min_confidence <= 1:
         raise ValueError(f"min_confidence must lie between 0 and 1; got {min_confidence!r}")
-    table = penalty_table(observations, semantic_map, weights, distance_term)
+    table = association.penalty_table(observations, semantic_map, weights, distance_term)
     ranked = rank_poses(observations, semantic_map, evidence)
     pairs = ranked[0].pairs if ranked else ()
     confidence = confidence_of(ranked[0], evidence) if ranked else 0.0
@@ -90,7 +85,7 @@ def associate_consistent(
         f"({one.pose.x:.2f}, {one.pose.y:.2f}) m at {np.degrees(one.pose.theta):.0f} degrees ({one.share:.0%})"
         for one in ranked
     )
-    return association_of(pairs, observations, semantic_map, table)._replace(
+    return association.association_of(pairs, observations, semantic_map, table)._replace(
         hypotheses=ranked,
         confidence=confidence,
         reason=why_unable(len(ranked), len(pairs), confidence, min_confidence),

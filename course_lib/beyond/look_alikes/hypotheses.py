@@ -11,6 +11,7 @@ import numpy as np
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.detection.detected_object import canonical_label
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d as rotations
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
@@ -131,9 +132,3 @@ def seen_from(poses: np.ndarray, places: np.ndarray, covariances: np.ndarray) ->
     jacobians[..., 0, 0] = jacobians[..., 1, 1] = 1.0
     jacobians[..., 0, 2], jacobians[..., 1, 2] = -turned[..., 1], turned[..., 0]
     return turned + poses[:, None, :2], jacobians, rotation @ covariances @ np.swapaxes(rotation, -1, -2)
-
-
-def rotations(theta: np.ndarray) -> np.ndarray:
-    """Return R(theta) `(..., 2, 2)` of angles `(...)`, radians."""
-    cosine, sine = np.cos(theta), np.sin(theta)
-    return np.stack([np.stack([cosine, -sine], axis=-1), np.stack([sine, cosine], axis=-1)], axis=-2)

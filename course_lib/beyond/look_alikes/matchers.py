@@ -5,14 +5,8 @@ from collections.abc import Callable, Sequence
 from scipy.optimize import linear_sum_assignment
 
 from course_lib.beyond.look_alikes.consistent import associate_consistent
-from course_lib.spherical_stereo.semantic_map.association import (
-    Association,
-    Observation,
-    PenaltyWeights,
-    associate_greedy,
-    association_of,
-    penalty_table,
-)
+from course_lib.spherical_stereo.semantic_map import association
+from course_lib.spherical_stereo.semantic_map.association import Association, Observation, PenaltyWeights
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 
@@ -26,13 +20,14 @@ def associate_hungarian(
 
     Called as `associate_greedy`; distance_term serves for the table only.
     """
-    table = penalty_table(observations, semantic_map, weights, distance_term)
+    table = association.penalty_table(observations, semantic_map, weights, distance_term)
     chosen = linear_sum_assignment(table.object + table.hue + table.saturation)
-    return association_of([(int(i), int(j)) for i, j in zip(*chosen, strict=True)], observations, semantic_map, table)
+    pairs = [(int(i), int(j)) for i, j in zip(*chosen, strict=True)]
+    return association.association_of(pairs, observations, semantic_map, table)
 
 
 ASSOCIATIONS: dict[str, Callable[..., Association]] = {
-    "greedy": associate_greedy,
+    "greedy": association.associate_greedy,
     "hungarian": associate_hungarian,
     "consistent": associate_consistent,
 }

@@ -112,10 +112,8 @@ class MeshBuilder:
         """All solids as one mesh."""
         vertices, faces, materials = zip(*self._pieces, strict=True)
         counts = [len(each) for each in faces]
-        starts = np.cumsum([0] + [len(each) for each in vertices[:-1]])
         return WorldMesh(
-            vertices=np.concatenate(vertices),
-            faces=np.concatenate([each + start for each, start in zip(faces, starts, strict=True)]),
+            *trimesh.util.append_faces(vertices, faces),
             reflectivity=np.repeat([material.reflectivity for material in materials], counts),
             colours=np.repeat(np.array([material.colour for material in materials], np.uint8), counts, axis=0),
         )

@@ -20,12 +20,10 @@ def wall(
     """Wall surface from `start` to `end` with rectangular openings (start, end, bottom, top), none overlapping."""
     at = start
     for low, high, bottom, top in [*sorted(openings), (end, end, 0.0, 0.0)]:
-        if low - at > 1e-6:
-            b.panel(place, (at, 0, 0), (low - at, 0, 0), (0, 0, CEILING_HEIGHT), m.WALL_PAINT)
-            b.box(place, (at, -0.012, 0), (low, 0.02, 0.08), m.SKIRTING, bevel=0.004)
-        if bottom > 0:
-            b.panel(place, (low, 0, 0), (high - low, 0, 0), (0, 0, bottom), m.WALL_PAINT)
-            b.box(place, (low, -0.012, 0), (high, 0.02, 0.08), m.SKIRTING, bevel=0.004)
+        for left, right, height in ((at, low, CEILING_HEIGHT), (low, high, bottom)):
+            if right - left > 1e-6 and height > 0:
+                b.panel(place, (left, 0, 0), (right - left, 0, 0), (0, 0, height), m.WALL_PAINT)
+                b.box(place, (left, -0.012, 0), (right, 0.02, 0.08), m.SKIRTING, bevel=0.004)
         if high > low and top < CEILING_HEIGHT:
             b.panel(place, (low, 0, top), (high - low, 0, 0), (0, 0, CEILING_HEIGHT - top), m.WALL_PAINT)
         at = high

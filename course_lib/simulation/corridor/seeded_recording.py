@@ -18,14 +18,9 @@ from course_lib.simulation.corridor import recorded_runs
 from course_lib.simulation.corridor.mesh_building import WorldMesh
 from course_lib.simulation.corridor.recorded_runs import FloorSurveyModel, HandModel, PushModel, Run, WagonModel
 from course_lib.simulation.corridor.world import Building, DayModel, draw_building, scene_change
+from course_lib.simulation.sensors import time_of_flight
 from course_lib.simulation.sensors.ray_casting import WorldCaster
-from course_lib.simulation.sensors.time_of_flight import (
-    CalibrationErrors,
-    CalibrationModel,
-    TimeOfFlightCamera,
-    TimeOfFlightModel,
-    frame_counts,
-)
+from course_lib.simulation.sensors.time_of_flight import CalibrationModel, TimeOfFlightCamera, TimeOfFlightModel
 
 # What a recording may have that the shipped one has not.
 Hardship = Literal["focal length", "lens distortion", "mount position", "mount angle", "pushed by hand"]
@@ -76,7 +71,7 @@ def record(
     for state in progress(states[:frames]):
         frame = camera.capture(caster, state, rng)
         depths.append(frame.depth)
-        counts.update(frame_counts(frame, camera.model))
+        counts.update(time_of_flight.frame_counts(frame, camera.model))
     path = recorded_runs.survey_floor_line(states, floor_survey, rng)
     n = len(depths)
     write_sequence(folder, camera.camera.matrix, list(range(n)), depths, optical_pose(states[:n]), times[:n], "z", path)
@@ -111,7 +106,7 @@ def record_seed(
     drawn = models.calibration.draw(calibration_rng)
     position = drawn.mount[:3] if "mount position" in hardships else (0.0,) * 3
     angles = drawn.mount[3:] if "mount angle" in hardships else (0.0,) * 3
-    errors = CalibrationErrors(
+    errors = time_of_flight.CalibrationErrors(
         drawn.focal_length if "focal length" in hardships else 0.0,
         drawn.radial if "lens distortion" in hardships else 0.0,
         (*position, *angles),

@@ -6,24 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.random import Generator
 
+from course_lib.simulation import textures
 from course_lib.simulation.furniture.solids import Piece, box, cylinder, lathe, panel, rod, rounded_box, swept, turn
-from course_lib.simulation.textures import (
-    CLOTH_PATTERNS,
-    Surface,
-    book_row,
-    carpet,
-    ceramic,
-    cloth,
-    colour,
-    dark_screen,
-    label,
-    leather,
-    leaves,
-    metal,
-    picture,
-    random_colour,
-    wood,
-)
+from course_lib.simulation.textures import CLOTH_PATTERNS, Surface, cloth, colour, metal, random_colour, wood
 
 BACK_DEPTH = 0.2  # metres
 
@@ -114,7 +99,7 @@ def random_sofa(rng: Generator) -> Piece:
     )
     rgb = random_colour(rng, (8, 95), (25, 95))
     if rng.random() < 0.3:
-        cover = leather(rng, rgb, size=rng.uniform(0.7, 1.0))
+        cover = textures.leather(rng, rgb, size=rng.uniform(0.7, 1.0))
     else:
         second = random_colour(rng) if rng.random() < 0.3 else None
         cover = cloth(rng, rgb, str(rng.choice(CLOTH_PATTERNS)), second, rng.uniform(0.7, 1.0))
@@ -457,7 +442,7 @@ def random_cabinet(rng: Generator, kind: str | None = None) -> Piece:
         fronts = [wood(rng, random_colour(rng, (0, 85), (30, 98)), 0.9) for _ in range(int(rng.integers(1, 4)))]
     inside = wood(rng, natural, 0.6, 128)
     knob = metal(rng, random_colour(rng, (0, 40), (10, 85)), 0.3, 128)
-    books = [book_row(rng, width / columns, 0.3) for _ in range(3)] if "open" in dict(rows) else []
+    books = [textures.book_row(rng, width / columns, 0.3) for _ in range(3)] if "open" in dict(rows) else []
     return build_cabinet(shape, body, fronts, inside, knob, books)
 
 
@@ -540,7 +525,9 @@ def random_refrigerator(rng: Generator) -> Piece:
     else:
         tint = random_colour(rng, (20, 85), (40, 95))
     body, steel, dark = metal(rng, tint, 0.8), metal(rng, (0.72, 0.73, 0.75)), metal(rng, (0.12, 0.12, 0.13))
-    notes = [label(rng, rng.uniform(0.07, 0.16), rng.uniform(0.08, 0.2)) for _ in range(int(rng.integers(0, 5)))]
+    notes = [
+        textures.label(rng, rng.uniform(0.07, 0.16), rng.uniform(0.08, 0.2)) for _ in range(int(rng.integers(0, 5)))
+    ]
     return build_refrigerator(shape, body, steel, dark, notes)
 
 
@@ -590,9 +577,9 @@ def random_television(rng: Generator, stand: str | None = None) -> Piece:
     )
     case = metal(rng, colour(rng.uniform(0, 360), rng.uniform(0, 12), rng.choice([9.0, 14.0, 22.0, 75.0])))
     if rng.random() < 0.4:
-        screen = dark_screen(rng, width, width * 9 / 16)
+        screen = textures.dark_screen(rng, width, width * 9 / 16)
     else:
-        screen = picture(rng, width, width * 9 / 16, emission=float(rng.uniform(0.5, 0.95)))
+        screen = textures.picture(rng, width, width * 9 / 16, emission=float(rng.uniform(0.5, 0.95)))
     return build_television(shape, case, screen)
 
 
@@ -708,12 +695,12 @@ def random_plant(rng: Generator) -> Piece:
     # Half of the plants are green; the rest is there so that the shape, not the green, makes a plant.
     hue = rng.choice([rng.uniform(85, 150), rng.uniform(60, 150), rng.uniform(270, 380), rng.uniform(0, 360)])
     greens = (colour(hue + rng.uniform(-12, 12), rng.uniform(40, 85), rng.uniform(25, 80)) for _ in range(2))
-    skins = [leaves(rng, green) for green in greens]
+    skins = [textures.leaves(rng, green) for green in greens]
     pot_colour = random_colour(rng, (5, 90), (30, 97))
     if rng.random() < 0.35:
         pot_colour = colour(hue + rng.uniform(-25, 25), rng.uniform(30, 85), rng.uniform(30, 90))
-    clay = ceramic(rng, pot_colour)
-    earth = carpet(rng, colour(28, 45, 22), 0.5, 128)
+    clay = textures.ceramic(rng, pot_colour)
+    earth = textures.carpet(rng, colour(28, 45, 22), 0.5, 128)
     bark = wood(rng, colour(rng.uniform(20, 90), 45, rng.uniform(25, 50)), 0.4, 128)
     return build_plant(shape, clay, earth, skins, bark, rng)
 

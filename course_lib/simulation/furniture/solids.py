@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import trimesh
 
 from course_lib.geometry import pose_matrix
 from course_lib.simulation.room.scene import RoomObject
@@ -206,6 +207,4 @@ def joined(meshes: Sequence[TexturedMesh]) -> tuple[TexturedMesh, ...]:
 
 def merged(meshes: Sequence[TexturedMesh]) -> tuple[np.ndarray, np.ndarray]:
     """All triangles of the meshes: vertices `(V, 3)`, faces `(F, 3)`."""
-    starts = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes[:-1]])
-    vertices = np.concatenate([mesh.vertices for mesh in meshes])
-    return vertices, np.concatenate([mesh.faces + start for mesh, start in zip(meshes, starts, strict=True)])
+    return trimesh.util.append_faces([mesh.vertices for mesh in meshes], [mesh.faces for mesh in meshes])

@@ -12,14 +12,9 @@ from course_lib.simulation.room.experiment_room import make_experiment_room
 from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
 from course_lib.simulation.room.stereo_photographs import photograph_pair, write_poses
 from course_lib.simulation.room.survey import RoomSurveyModel, survey_room
+from course_lib.simulation.sensors import panorama_rig
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import (
-    NEARLY_PERFECT_RIG,
-    PanoramaCameraModel,
-    RigModel,
-    assemble,
-    stand_up,
-)
+from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, PanoramaCameraModel, RigModel
 
 PRODUCTS = ("experiment_1", "experiment_2", "semantic_map.json", "PARAMETERS.md", "SHA256SUMS")
 
@@ -51,7 +46,7 @@ def make_room_data(
     """Make the data in folder `out`; return a summary. One seed gives one set of bytes."""
     survey_rng, rng = np.random.default_rng(seed).spawn(2)
     room = make_experiment_room()
-    mount = None if models.rig.assembled_anew else assemble(models.rig, rng.spawn(1)[0])
+    mount = None if models.rig.assembled_anew else panorama_rig.assemble(models.rig, rng.spawn(1)[0])
     baseline, heights = models.heights.baseline, {1: models.heights.upper_1, 2: models.heights.upper_2}
     places = [place for place in MEASUREMENT_PLACES if place.place in models.places]
     shots = [(experiment, place, turn) for experiment in heights for place in places for turn in range(2)]
@@ -63,7 +58,7 @@ def make_room_data(
         with PanoramaRenderer(room, models.width) as renderer:
             for experiment, place, turn in progress(shots):
                 pose = place.x, place.y, np.deg2rad(place.headings_deg[turn])
-                rig = stand_up(pose, heights[experiment], baseline, models.rig, rng, mount)
+                rig = panorama_rig.stand_up(pose, heights[experiment], baseline, models.rig, rng, mount)
                 name, where = f"{place.place:02d}_{'ab'[turn]}", folder / f"experiment_{experiment}"
                 lists[experiment].append(photograph_pair(renderer, rig, where, name, models.camera, rng))
         for experiment, entries in lists.items():

@@ -14,15 +14,9 @@ from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS
 from course_lib.simulation.room.scene import Room, clear_of, footprint, free_places
 from course_lib.simulation.room.stereo_photographs import photograph_pair, write_poses
 from course_lib.simulation.room.survey import RoomSurveyModel, UnseenObject, survey_room
+from course_lib.simulation.sensors import panorama_rig
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import (
-    Mount,
-    PanoramaCameraModel,
-    RigModel,
-    assemble,
-    stand_up,
-    write_photograph,
-)
+from course_lib.simulation.sensors.panorama_rig import Mount, PanoramaCameraModel, RigModel
 from course_lib.spherical_stereo.panorama import read_panorama
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
@@ -67,7 +61,7 @@ def measurement_poses(room: Room, n: int, seed: int) -> np.ndarray:
 
 def mount_of(seed: int, models: RecordingModels) -> Mount:
     """How the two cameras of a seed's rig sit: one mount for all its poses."""
-    mount = assemble(models.rig, np.random.default_rng([STREAM, seed, MOUNT]))
+    mount = panorama_rig.assemble(models.rig, np.random.default_rng([STREAM, seed, MOUNT]))
     return mount if models.tilt_deg is None else mount.tilted(models.tilt_deg)
 
 
@@ -81,7 +75,7 @@ def photograph_room(folder: Path, room: Room, seed: int, n_poses: int, models: R
             entries = []
             for k, pose in enumerate(poses):
                 rng = np.random.default_rng([STREAM, seed, POSE, number, k])
-                rig = stand_up(pose, upper, upper - lower, models.rig, rng, mount)
+                rig = panorama_rig.stand_up(pose, upper, upper - lower, models.rig, rng, mount)
                 entries.append(photograph_pair(renderer, rig, folders[-1], f"{k:02d}", models.camera, rng))
             write_poses(folders[-1], seed, models.width, round(upper - lower, 6), entries)
     return folders
@@ -138,10 +132,10 @@ def photograph_walks(
             upper, lower = CAMERA_HEIGHTS[experiment_of(k)]
             views = []
             for place in walk_from(room, pose, n, rng, walk):
-                rig = stand_up(place, upper, upper - lower, models.rig, rng, mount)
+                rig = panorama_rig.stand_up(place, upper, upper - lower, models.rig, rng, mount)
                 images = []
                 for state in rig.camera_states():
-                    write_photograph(folder / "view.jpg", renderer.render(state), models.camera, rng)
+                    panorama_rig.write_photograph(folder / "view.jpg", renderer.render(state), models.camera, rng)
                     images.append(read_panorama(folder / "view.jpg"))
                 views.append(NearbyView(place, *images))
             yield views

@@ -8,9 +8,8 @@ from numpy.random import Generator
 
 from course_lib.simulation.sensors.panorama_renderer import BACKGROUND, PanoramaRenderer
 from course_lib.simulation.sensors.panorama_rig import PanoramaCameraModel, RigPose, write_photograph
+from course_lib.spherical_stereo.detection.colour import Box
 from course_lib.spherical_stereo.recording import POSES_FILE, VERSION, TrueObject
-
-Box = tuple[float, float, float, float]
 
 
 def object_boxes(renderer: PanoramaRenderer, state: np.ndarray) -> list[TrueObject]:

@@ -11,13 +11,9 @@ from course_lib.files import atomic_write, read_json
 from course_lib.simulation.room.furnishing import make_room
 from course_lib.simulation.room.scene import free_places
 from course_lib.simulation.room.stereo_photographs import box_entries
+from course_lib.simulation.sensors import panorama_rig
 from course_lib.simulation.sensors.panorama_renderer import PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import (
-    NEARLY_PERFECT_RIG,
-    PanoramaCameraModel,
-    stand_up,
-    write_photograph,
-)
+from course_lib.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, PanoramaCameraModel
 from course_lib.spherical_stereo.panorama import read_panorama
 from course_lib.spherical_stereo.recording import TrueObject, true_object
 
@@ -76,10 +72,10 @@ def _photograph_room(folder: Path, seed: int, count: int) -> list[dict]:
     with PanoramaRenderer(room, WIDTH, number_scale=1) as renderer:
         for index, (x, y) in enumerate(free_places(room, count, rng)):
             pose = x, y, rng.uniform(-np.pi, np.pi)
-            rig = stand_up(pose, rng.uniform(*CAMERA_HEIGHTS), 0.3, NEARLY_PERFECT_RIG, rng)
+            rig = panorama_rig.stand_up(pose, rng.uniform(*CAMERA_HEIGHTS), 0.3, NEARLY_PERFECT_RIG, rng)
             state, _ = rig.camera_states()
             name = f"{seed:06d}_{index}.jpg"
-            write_photograph(folder / name, renderer.render(state), TRAINING_CAMERA, rng)
+            panorama_rig.write_photograph(folder / name, renderer.render(state), TRAINING_CAMERA, rng)
             size = {"width": WIDTH, "height": WIDTH // 2}
             images.append({"file": name, "room_seed": seed, **size, "objects": box_entries(renderer, state)})
     return images

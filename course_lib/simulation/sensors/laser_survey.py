@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 
 from course_lib.geometry import pose_matrix
 from course_lib.simulation.sensors.ray_casting import WorldCaster
+from course_lib.spherical_stereo.panorama import direction_from_angles
 
 # Where the scanner stands on the survey day: x, y in metres. Chosen: every 4 to 7 m, one in the side corridor's mouth.
 STATIONS = ((2.2, -0.3), (8.3, 0.3), (13.3, -0.4), (17.7, 0.5), (23.3, -0.3), (29.4, 0.4), (36.3, -0.2))
@@ -52,7 +53,8 @@ class RegisteredScan:
     def points(self, pose: np.ndarray | None = None) -> np.ndarray:
         """Measured points `(n, 3)` in the world, by the registered pose if no other is given."""
         pose, measured = self.registered_pose if pose is None else pose, np.isfinite(self.ranges)
-        local = _directions(self.elevations, self.azimuths)[measured] * self.ranges[measured][:, None]
+        directions = direction_from_angles(self.azimuths, self.elevations[:, None])
+        local = directions[measured] * self.ranges[measured][:, None]
         return local @ pose[:3, :3].T + pose[:3, 3]
 
 
@@ -91,7 +93,8 @@ def scan(
     elevations = np.arange(np.deg2rad(model.lowest_deg), np.pi / 2 - step, step)
     azimuths = np.arange(round(2 * np.pi / step)) * step - np.pi
     bands = np.array_split(elevations, max(1, len(elevations) // 200))
-    ranges = np.concatenate([_ranges(caster, model, true_pose, _directions(band, azimuths), rng) for band in bands])
+    directions = (direction_from_angles(azimuths, band[:, None]) for band in bands)
+    ranges = np.concatenate([_ranges(caster, model, true_pose, each, rng) for each in directions])
     return Scan(ranges, elevations, azimuths, registered_pose, true_pose)
 
 
@@ -140,11 +143,6 @@ def registration_error(scans: list[Scan], rng: Generator, n_points: int = 20_000
     offsets = [s.registered_pose[:3, 3] - s.true_pose[:3, 3] for s in scans]
     result["rms_station_position_error_m"] = float(np.sqrt(np.mean(np.sum(np.square(offsets), axis=1))))
     return result
-
-
-def _directions(elevations: np.ndarray, azimuths: np.ndarray) -> np.ndarray:
-    e, a = np.meshgrid(elevations, azimuths, indexing="ij")
-    return np.stack([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)], axis=-1)
 
 
 def _tangent(directions: np.ndarray) -> np.ndarray:

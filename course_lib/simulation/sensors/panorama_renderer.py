@@ -10,8 +10,9 @@ from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkLight, vtkPolyDataMapper, vtkRenderer, vtkTexture
 from vtkmodules.vtkRenderingOpenGL2 import vtkPanoramicProjectionPass, vtkRenderStepsPass
 
-from course_lib.geometry import pose_matrix
-from course_lib.rendering.vtk_backend import off_screen_window
+from course_lib.geometry import optical_pose
+from course_lib.rendering.vtk_backend import off_screen_window, place_camera
+from course_lib.simulation.corridor.mesh_building import to_polydata
 from course_lib.simulation.room.scene import Lamp, Room
 from course_lib.simulation.textures import TexturedMesh
 
@@ -136,11 +137,8 @@ class _Scene:
             actor.SetVisibility(number is None or its_number == number)
 
     def draw(self, state: np.ndarray) -> np.ndarray:
-        pose = pose_matrix(np.asarray(state, float))
-        camera = self._renderer.GetActiveCamera()
-        camera.SetPosition(*pose[:3, 3])
-        camera.SetFocalPoint(*(pose[:3, 3] + pose[:3, 0]))
-        camera.SetViewUp(*pose[:3, 2])
+        pose, camera = optical_pose(state), self._renderer.GetActiveCamera()
+        place_camera(camera, pose[:3, :3], pose[:3, 3])
         camera.SetClippingRange(NEAR, FAR)
         self._window.Render()
         self._window.GetPixelData(0, 0, self._width - 1, self._width // 2 - 1, 1, self._pixels, 0)
@@ -154,9 +152,7 @@ class _Scene:
 
 
 def _poly_data(mesh: TexturedMesh) -> vtkPolyData:
-    import pyvista
-
-    data = pyvista.PolyData.from_regular_faces(np.asarray(mesh.vertices, np.float32), np.asarray(mesh.faces, np.int64))
+    data = to_polydata(np.asarray(mesh.vertices, np.float32), mesh.faces)
     data.active_texture_coordinates = np.asarray(mesh.texture_coordinates, np.float32)
     return data.compute_normals(
         cell_normals=False, split_vertices=True, feature_angle=FEATURE_ANGLE_DEG, consistent_normals=False

@@ -10,9 +10,7 @@ import numpy as np
 
 from course_lib.spherical_stereo.panorama import View
 
-# Labels of the maps, rooms and network of this project.
-CANONICAL_LABELS = ("sofa", "chair", "table", "television", "potted plant", "refrigerator", "cabinet")
-# Names that COCO, VOC and people use for these classes, in lower case with single spaces.
+# Names that COCO, VOC and people use for the classes of our maps and network, in lower case with single spaces.
 _OTHER_NAMES = {
     "sofa": ("couch", "settee"),
     "table": ("diningtable", "dining table", "desk"),

@@ -72,10 +72,10 @@ class Residuals(NamedTuple):
         return (self.chi_square / self.degrees_of_freedom) ** 0.5
 
 
-def rotation_2d(theta: float) -> np.ndarray:
-    """Return R(theta) = [[cos, -sin], [sin, cos]], `(2, 2)`, theta in radians."""
+def rotation_2d(theta: np.ndarray | float) -> np.ndarray:
+    """Return R(theta) = [[cos, -sin], [sin, cos]], `(..., 2, 2)`, of angles theta `(...)` in radians."""
     cosine, sine = np.cos(theta), np.sin(theta)
-    return np.array([[cosine, -sine], [sine, cosine]])
+    return np.stack([np.stack([cosine, -sine], axis=-1), np.stack([sine, cosine], axis=-1)], axis=-2)
 
 
 def fit_rigid_2d(

@@ -11,15 +11,9 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from course_lib.spherical_stereo import panorama
 from course_lib.spherical_stereo.detection.detected_object import DetectionError, box_centre, canonical_label
-from course_lib.spherical_stereo.panorama import (
-    StereoRig,
-    View,
-    azimuth_elevation,
-    azimuth_elevation_of_pixel,
-    direction_from_angles,
-    pixel_to_direction,
-)
+from course_lib.spherical_stereo.panorama import StereoRig, View, direction_from_angles, pixel_to_direction
 from course_lib.spherical_stereo.ranging import triangulation
 from course_lib.spherical_stereo.ranging.triangulation import OK, PARALLEL, triangulate
 
@@ -97,8 +91,8 @@ def disparity_distance(match, width: int, height: int, baseline: float) -> Dispa
 
     rho = baseline / median(tan e_l - tan e_u): noise of pixels moves the slopes evenly to both sides, the ranges not.
     """
-    _, upper = azimuth_elevation_of_pixel(match.keypoints_upper, width, height)
-    _, lower = azimuth_elevation_of_pixel(match.keypoints_lower, width, height)
+    _, upper = panorama.azimuth_elevation_of_pixel(match.keypoints_upper, width, height)
+    _, lower = panorama.azimuth_elevation_of_pixel(match.keypoints_lower, width, height)
     slope = np.tan(lower) - np.tan(upper)
     if len(slope) < MIN_MATCHES:
         return DisparityDistance(TOO_FEW_MATCHES)
@@ -150,7 +144,7 @@ def measure_objects(
     measured = []
     for match, *found in zip(matches, by_boxes, by_features, strict=True):
         direction = pixel_to_direction(box_centre(upper.detections[match.upper].box), *upper.size)
-        azimuth = float(np.degrees(azimuth_elevation(direction)[0]))
+        azimuth = float(np.degrees(panorama.azimuth_elevation(direction)[0]))
         label = canonical_label(match.label)
         measured.append(MeasuredObject(match.upper, match.lower, label, match.n_matches, azimuth, *found))
     return measured
@@ -177,7 +171,7 @@ def _from_features(match, from_upper: np.ndarray, baseline: float, size, noise: 
     measured = disparity_distance(match, *size, baseline)
     if measured.outcome != OK:
         return ObjectPosition(measured.outcome)
-    azimuth, elevation = azimuth_elevation(from_upper)
+    azimuth, elevation = panorama.azimuth_elevation(from_upper)
     along = direction_from_angles(azimuth, 0.0)[:2]
     across = np.array([-along[1], along[0]])
     variance_along = measured.sigma**2 + noise.surface**2
