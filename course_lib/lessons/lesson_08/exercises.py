@@ -258,7 +258,7 @@ EXERCISES = [
         You name the frame where the row begins. Nobody can know that yet: name the one where it is complete.
         return frame => return frame + 1
         Your frame is one too high: do you count frames from 1? The first is frame 0.
-        ... => back = lost_since(scores[::-1], limit, patience); return -1 if back < 0 else len(scores) + patience - 2 - back
+        ... => k = lost_since(scores[::-1], limit, patience); return -1 if k < 0 else len(scores) + patience - 2 - k
         That is the last frame of an alarm. Asked for is the first one: stop there.
         ... => return first_window(scores, limit, patience, np.mean)
         ... => return first_window(scores, limit, patience, np.median)

@@ -1,0 +1,44 @@
+"""Lesson 08's filter along the corridor follows and gets lost as the text says; frames are worth what is said."""
+
+import numpy as np
+import pytest
+
+from course_lib.lessons.lesson_08.along import OFFSETS, AgreementTable, localize_along, row
+from course_lib.lessons.lesson_08.exercises import effective_frames
+from course_lib.lessons.lesson_08.stored import stored_runs
+
+
+def along_a_straight_path(sigma_x: float):
+    """A wagon that rolls 0.1 m a frame along a straight path, and a hill as wide as the corridor's."""
+    true, path = np.zeros((24, 6)), np.zeros((2001, 3))
+    true[:, 0], path[:, 0] = 8 + 0.1 * np.arange(24), np.linspace(0, 20, 2001)
+    table = AgreementTable(true, path, np.tile(0.3 + 0.4 / (1 + np.abs(OFFSETS) / 0.15), (24, 1)))
+    return localize_along(table, n_particles=200, sigma_x=sigma_x, beta=0.01, start_error=0.0, seed=1)
+
+
+def test_with_the_papers_noise_it_follows_and_a_row_tells_nothing_finer_than_the_table():
+    run = along_a_straight_path(sigma_x=0.15)
+    assert run.timed.errors.max() < 0.05
+    assert row(run).count("< 0.05 m") == 4
+
+
+def test_with_too_little_noise_it_lags_and_only_the_timed_error_and_the_score_say_so():
+    run = along_a_straight_path(sigma_x=0.01)
+    assert run.timed.errors[-1] > 0.5 > 0.01 > run.nearest.errors.max()
+    assert run.scores[-1] < 0.8 * run.scores[0]
+    assert np.median(run.best_weights) > 0.5
+    assert f"largest {run.timed.errors.max():.2f} m" in row(run)
+
+
+def test_frames_are_worth_what_a_simulation_of_their_mean_says():
+    rng, a = np.random.default_rng(1), 0.9
+    errors = [rng.normal(size=3000)]
+    for _ in range(39):
+        errors.append(a * errors[-1] + np.sqrt(1 - a**2) * rng.normal(size=3000))
+    assert 1 / np.var(np.mean(errors, axis=0)) == pytest.approx(effective_frames(40, a), rel=0.08)
+
+
+def test_the_304_frames_are_worth_what_the_solution_says():
+    near = [stored_runs()[0].columns[f"{method}_nearest_m"] for method in ("proposed", "fallon")]
+    worth = [effective_frames(304, np.corrcoef(errors[:-1], errors[1:])[0, 1].round(2)) for errors in near]
+    assert [round(frames) for frames in worth] == [164, 2]
