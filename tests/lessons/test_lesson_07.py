@@ -1,10 +1,9 @@
-"""The stepper steps as figure 1 does; the lesson's Kalman filter and the error bar of exercise 07.4 are right."""
+"""The stepper steps as figure 1 does, one bell tells no doors apart, and the error bar of exercise 07.4 is right."""
 
 import numpy as np
 import pytest
-from filterpy.kalman import predict, update
 
-from course_lib.lessons.lesson_07.beside_kalman import LASER, ROLLING, START, STEP, kalman_means, wagon_and_laser
+from course_lib.lessons.lesson_07.beside_kalman import DOORS, best_bells
 from course_lib.lessons.lesson_07.draws import copies
 from course_lib.lessons.lesson_07.exercises import stratified_error
 from course_lib.lessons.lesson_07.filter_stepper import FRAMES
@@ -29,12 +28,10 @@ def test_buttons_step_in_the_order_of_figure_1_and_a_step_that_cannot_come_is_to
     assert panel.draw(**panel.values()).summary == other.draw(**other.values()).summary
 
 
-def test_the_kalman_filter_is_filterpys():
-    measured, belief, means = wagon_and_laser(seed=3)[1], (START, 0.0), []
-    for z in measured:
-        belief = update(*predict(*belief, u=STEP, Q=ROLLING**2), z, LASER**2)
-        means.append(belief[0])
-    assert kalman_means(measured) == pytest.approx(means)
+def test_one_bell_over_doors_that_look_alike_has_the_mean_of_the_doors_and_then_stands_where_none_is():
+    first, second = best_bells((0.0, 2.0))
+    assert first.mean() == pytest.approx(np.mean(DOORS), abs=1e-3)
+    assert abs(second.mean() - np.array(DOORS)).min() > 1
 
 
 def test_the_error_bar_of_exercise_07_4_is_that_of_the_simulation():

@@ -5,8 +5,6 @@ from collections import namedtuple
 import numpy as np
 from scipy.stats import norm
 
-from course_lib.depth_mcl.particle_filter import resample
-
 # The wagon: metres that it is told to roll a frame, standard deviations of its rolling and of its laser (chosen).
 STEP, ROLLING, LASER = 0.30, 0.05, 0.20
 START, FRAMES, RUNS = 1.0, 30, 40
@@ -22,35 +20,17 @@ def wagon_and_laser(seed: int) -> tuple[np.ndarray, np.ndarray]:
     return true, true + rng.normal(0, LASER, FRAMES)
 
 
-def kalman_means(measured: np.ndarray) -> np.ndarray:
-    """The Kalman filter's estimates `(T,)` of a run that begins, known exactly, at `START`."""
-    mean, variance, means = START, 0.0, []
-    for z in measured:
-        mean, variance = mean + STEP, variance + ROLLING**2
-        gain = variance / (variance + LASER**2)
-        mean, variance = mean + gain * (z - mean), (1 - gain) * variance
-        means.append(mean)
-    return np.array(means)
-
-
-def particle_means(measured: np.ndarray, n_particles: int, seed: int) -> np.ndarray:
-    """The particle filter's estimates `(T,)` of the same run: same motion, same likelihood."""
-    rng, x, means = np.random.default_rng(seed), np.full(n_particles, START), []
-    for z in measured:
-        x = x + STEP + rng.normal(0, ROLLING, n_particles)
-        w = np.exp(-((z - x) ** 2) / (2 * LASER**2))
-        w /= w.sum()
-        means.append(w @ x)
-        x = x[resample(w, rng)]
-    return np.array(means)
-
-
-def beside_kalman(n_particles: int) -> BesideKalman:
+def beside_kalman(n_particles: int, kalman_step, particle_step) -> BesideKalman:
     """Root mean square distances `(RUNS,)` [m] of both filters from each other and the truth, on the same data."""
     rows = []
     for seed in range(1, RUNS + 1):
         true, measured = wagon_and_laser(seed)
-        exact, found = kalman_means(measured), particle_means(measured, n_particles, 1000 + seed)
+        belief, particles, rng = (START, 0.0), np.full(n_particles, START), np.random.default_rng(1000 + seed)
+        exact, found = np.empty((2, FRAMES))
+        for t, z in enumerate(measured):
+            belief = kalman_step(*belief, z)
+            exact[t] = belief[0]
+            found[t], particles = particle_step(particles, z, rng)
         rows.append([np.sqrt(np.mean((a - b) ** 2)) for a, b in ((found, exact), (found, true), (exact, true))])
     return BesideKalman(*np.array(rows).T)
 
