@@ -67,15 +67,16 @@ def general_mistake(exercise: Exercise, arguments: list[tuple], answers: list) -
             if all(agree(a, slip(w), exercise.tolerance) for a, w in zip(answers, wanted, strict=True)):
                 return sentence
         for sentence, function in [*argument_slips(exercise.solution, arguments[-1]), *code_slips(exercise.solution)]:
-            if all(_gives(function, g, a, exercise.tolerance) for g, a in zip(arguments, answers, strict=True)):
+            if all(gives(function, g, a, exercise.tolerance) for g, a in zip(arguments, answers, strict=True)):
                 return sentence
         return constant_difference(answers, wanted, exercise.tolerance)
 
 
-def _gives(function: Callable, given: tuple, answer: object, tolerance: float) -> bool:
+def gives(function: Callable, given: tuple, answer: object, tolerance: float) -> bool:
+    """Return whether a mistaken function gives this answer. If it cannot run on these arguments, it does not."""
     try:
         return agree(answer, function(*copy.deepcopy(given)), tolerance)
-    except Exception:  # a slip may make code that cannot run on these arguments
+    except Exception:
         return False
 
 
