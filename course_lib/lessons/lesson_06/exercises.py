@@ -9,23 +9,18 @@ from course_lib.lessons.kit.exercises import Exercise
 # 06.1: the raw score behind people
 
 
-def raw_score(hidden, near, far, alpha):
-    """Raw scores l / m (n,) where people hide shares (n,) of the pixels; near and far: differences [m]."""
+def raw_score(hidden, alpha):
+    """Raw scores l / m (n,) where people hide shares (n,) of the measured pixels."""
     # A mean over the pixels: each share of them counts its own term.
-    return (1 - hidden) * alpha / (alpha + near) + hidden * alpha / (alpha + far)
+    return (1 - hidden) * alpha / (alpha + 0.02) + hidden * alpha / (alpha + 2)
 
 
-def people(rng: np.random.Generator) -> tuple:
-    return rng.uniform(0, 1, 4), rng.uniform(0.005, 0.1), rng.uniform(0.3, 8), rng.uniform(0.03, 0.5)
+def shares_and_alpha(rng: np.random.Generator) -> tuple:
+    return rng.uniform(0, 1, int(rng.integers(3, 7))), rng.uniform(0.01, 1.0)
 
 
-def nobody_in_view(rng: np.random.Generator) -> tuple:
-    return np.zeros(3), *people(rng)[1:]
-
-
-def a_hole_in_the_map(rng: np.random.Generator) -> tuple:
-    hidden, near, _, alpha = people(rng)
-    return hidden, near, np.inf, alpha
+def nobody_or_all_hidden(rng: np.random.Generator) -> tuple:
+    return np.array([0.0, 1.0, 0.0, 0.5]), 0.1
 
 
 # 06.2: three faults in somebody's code
@@ -137,21 +132,21 @@ def one_outweighs_all(rng: np.random.Generator) -> tuple:
 
 # fmt: off
 EXERCISES = [
-    Exercise("06.1", raw_score, people, "warm-up", cases=[nobody_in_view, a_hole_in_the_map], mistakes="""
-        ... => return alpha / (alpha + (1 - hidden) * near + hidden * far)
+    Exercise("06.1", raw_score, shares_and_alpha, "warm-up", cases=[nobody_or_all_hidden], mistakes="""
+        ... => return alpha / (alpha + (1 - hidden) * 0.02 + hidden * 2)
         You average the differences first. Equation (8) averages *terms*: a large difference hardly matters there.
         (1 - hidden) => hidden and also + hidden => + (1 - hidden)
-        The shares are exchanged: `hidden` of the pixels differ by `far`, the rest by `near`.
-        + hidden * alpha / (alpha + far) =>
+        The shares are exchanged: `hidden` of the pixels differ by 2 m, the rest by 0.02 m.
+        + hidden * alpha / (alpha + 2) =>
         You leave the hidden pixels out. They were measured: each counts its term, small as it is.
-        ... => return alpha / (alpha + near) + 0 * hidden
-        You divide by the pixels that nobody hides. The m of l / m is that of all measured pixels.
+        ... => return alpha / (alpha + 0.02) + 0 * hidden
+        You leave the hidden pixels out of l and of m. The m of l / m is the number of all measured pixels.
         (1 - hidden) * alpha => alpha
-        Only a share 1 - `hidden` of the pixels differs by `near`: the two shares sum to 1.
-        (1 - hidden) * alpha => (1 - hidden) * near and also hidden * alpha => hidden * np.minimum(far, 1e12)
+        Only a share 1 - `hidden` of the pixels differs by 0.02 m: the two shares sum to 1.
+        (1 - hidden) * alpha => (1 - hidden) * 0.02 and also hidden * alpha => hidden * 2
         That is what the pixels lose, d / (alpha + d). Equation (8) takes it away from 1.
-        hidden * alpha / (alpha + far) => hidden * (1 - (float("nan") if np.isinf(far) else far / (alpha + far)))
-        Right but for an infinite difference: inf / inf is NaN. Write the bracket of (8) as one fraction.
+        ... => return (alpha / (alpha + 0.02)) ** (1 - hidden) * (alpha / (alpha + 2)) ** hidden
+        You multiply the terms. Equation (8) adds them up, and l / m is their mean.
         alpha / (alpha => 0.1 / (0.1
         Your alpha is always 0.1 m: use the argument.
     """),

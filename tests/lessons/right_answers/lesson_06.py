@@ -7,9 +7,9 @@ def term(difference, alpha):
     return alpha / (alpha + difference)
 
 
-def scores_by_pixels(hidden, near, far, alpha):
+def scores_by_pixels(hidden, alpha):
     """As a weighted mean over two pixels."""
-    return np.array([np.average(term(np.array([near, far]), alpha), weights=[1 - share, share]) for share in hidden])
+    return np.array([np.average(term(np.array([0.02, 2]), alpha), weights=[1 - share, share]) for share in hidden])
 
 
 def weigh_by(likelihoods):
@@ -46,8 +46,8 @@ def averaged(x, target, proposal):
 
 RIGHT = [
     ("06.1", scores_by_pixels),
-    ("06.1", lambda hidden, near, far, a: term(near, a) - hidden * (term(near, a) - term(far, a))),
-    ("06.1", lambda hidden, near, far, a: [float(term(near, a) * (1 - h) + h * (1 / (1 + far / a))) for h in hidden]),
+    ("06.1", lambda hidden, a: term(0.02, a) - hidden * (term(0.02, a) - term(2, a))),
+    ("06.1", lambda hidden, a: [float(1 - 0.02 / (a + 0.02) * (1 - h) - 2 / (a + 2) * h) for h in hidden]),
     ("06.2", weigh_by(lambda terms, measured: np.nansum(terms, axis=(1, 2)))),
     (
         "06.2",
