@@ -1,30 +1,15 @@
-"""What lesson 06 says of outliers, of a person before the lens, of pixels and of its error bar holds."""
+"""What lesson 06 says of a person before the lens and of its error bar holds."""
 
 import numpy as np
 import pytest
 
-from course_lib.depth_mcl.fallon import depth_log_likelihood
 from course_lib.lessons.lesson_06.exercises import importance_mean
 from course_lib.lessons.lesson_06.forms import (
     FORMS,
-    MISS_DEPTH,
-    cost_of_a_pixel,
-    gaussian_log_likelihood,
     peak,
     profile,
 )
 from course_lib.lessons.lesson_06.panel import PAPER, behind_a_person
-
-
-def test_the_gaussian_is_a_sum_of_squares_and_a_miss_is_a_wall():
-    images = np.array([[[2.0, 3.0], [4.0, 9.0]], [[2.1, 3.0], [3.8, 9.0]], [[2.0, np.inf], [4.0, 9.0]]])
-    found = gaussian_log_likelihood(np.array([[2.0, 3.0], [4.0, np.nan]]), images)
-    assert found == pytest.approx([0, -(1 + 4) / 2, -((MISS_DEPTH - 3) ** 2) / 0.02])
-
-
-def test_the_drawn_cost_of_the_half_normal_is_that_of_the_library():
-    l0, small, large = depth_log_likelihood(np.array([[5.0]]), np.array([[[5.0]], [[5.4]], [[6.0]]]))
-    assert cost_of_a_pixel([0.4])["half-normal + uniform"] == pytest.approx((l0 - small) / (l0 - large), rel=1e-4)
 
 
 def test_behind_a_person_the_papers_form_stands_at_the_truth_longest():

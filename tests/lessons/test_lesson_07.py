@@ -1,9 +1,8 @@
-"""The stepper steps as figure 1 does, one bell tells no doors apart, and the error bar of exercise 07.4 is right."""
+"""The stepper steps as figure 1 does, and the error bar of exercise 07.4 is right."""
 
 import numpy as np
 import pytest
 
-from course_lib.lessons.lesson_07.beside_kalman import DOORS, best_bells
 from course_lib.lessons.lesson_07.draws import copies
 from course_lib.lessons.lesson_07.exercises import stratified_error
 from course_lib.lessons.lesson_07.filter_stepper import FRAMES
@@ -26,12 +25,6 @@ def test_buttons_step_in_the_order_of_figure_1_and_a_step_that_cannot_come_is_to
     assert "the stretch ends here" in panel.draw(**panel.values()).summary
     panel.press("Reset")
     assert panel.draw(**panel.values()).summary == other.draw(**other.values()).summary
-
-
-def test_one_bell_over_doors_that_look_alike_has_the_mean_of_the_doors_and_then_stands_where_none_is():
-    first, second = best_bells((0.0, 2.0))
-    assert first.mean() == pytest.approx(np.mean(DOORS), abs=1e-3)
-    assert abs(second.mean() - np.array(DOORS)).min() > 1
 
 
 def test_the_error_bar_of_exercise_07_4_is_that_of_the_simulation():

@@ -8,26 +8,16 @@ from course_lib.lessons.lesson_08.exercises import effective_frames
 from course_lib.lessons.lesson_08.stored import stored_runs
 
 
-def along_a_straight_path(sigma_x: float):
-    """A wagon that rolls 0.1 m a frame along a straight path, and a hill as wide as the corridor's."""
-    true, path = np.zeros((24, 6)), np.zeros((2001, 3))
+def test_with_too_little_noise_it_lags_and_only_the_timed_error_and_the_score_say_so():
+    true, path = np.zeros((24, 6)), np.zeros((2001, 3))  # a wagon rolls 0.1 m a frame along a straight path
     true[:, 0], path[:, 0] = 8 + 0.1 * np.arange(24), np.linspace(0, 20, 2001)
     table = AgreementTable(true, path, np.tile(0.3 + 0.4 / (1 + np.abs(OFFSETS) / 0.15), (24, 1)))
-    return localize_along(table, n_particles=200, sigma_x=sigma_x, beta=0.01, start_error=0.0, seed=1)
-
-
-def test_with_the_papers_noise_it_follows_and_a_row_tells_nothing_finer_than_the_table():
-    run = along_a_straight_path(sigma_x=0.15)
-    assert run.timed.errors.max() < 0.05
-    assert row(run).count("< 0.05 m") == 4
-
-
-def test_with_too_little_noise_it_lags_and_only_the_timed_error_and_the_score_say_so():
-    run = along_a_straight_path(sigma_x=0.01)
-    assert run.timed.errors[-1] > 0.5 > 0.01 > run.nearest.errors.max()
-    assert run.scores[-1] < 0.8 * run.scores[0]
-    assert np.median(run.best_weights) > 0.5
-    assert f"largest {run.timed.errors.max():.2f} m" in row(run)
+    good, lost = (localize_along(table, 200, sigma, beta=0.01, start_error=0.0, seed=1) for sigma in (0.15, 0.01))
+    assert good.timed.errors.max() < 0.05
+    assert row(good).count("< 0.05 m") == 4, "nothing finer than the table is spaced"
+    assert lost.timed.errors[-1] > 0.5 > 0.01 > lost.nearest.errors.max()
+    assert lost.scores[-1] < 0.8 * lost.scores[0]
+    assert np.median(lost.best_weights) > 0.5
 
 
 def test_frames_are_worth_what_a_simulation_of_their_mean_says():

@@ -147,8 +147,6 @@ EXERCISES = [
         arcsin knows half of the circle only, and the sum is no longer of length 1: use sine *and* cosine.
         np.arctan2(s, c) => np.arctan2(s, c) % (2 * np.pi)
         Right direction, but from 0 to 2 pi. The task asks for -pi to pi, as np.arctan2 gives it.
-        np.arctan2(s, c) => angles[np.argmax(w)]
-        That is the heading of the heaviest particle. Eq. (12) lets all of them take part.
         w * np.sin(angles) => np.sin(w * angles) and also w * np.cos(angles) => np.cos(w * angles)
         You weigh the angles themselves. The weight stands before sine and cosine: w * np.sin(angles).
         w * np => np
@@ -160,15 +158,10 @@ EXERCISES = [
         Your direction is right. Your R has no weights: it is the length of the same mean point.
         np.hypot(s, c) => np.hypot(s, c) / len(w)
         np.mean divides by N once more: the weights sum to 1 already, so add up. Your R is too short.
-        np.hypot(s, c) => np.sqrt(-2 * np.log(min(np.hypot(s, c), 1)))
-        That is the circular standard deviation, made of R. R itself is asked for.
         np.hypot(s, c) => 1 - np.hypot(s, c)
         Yours is 1 - R, how far they disagree. R itself is asked for: 1 where all look the same way.
         np.hypot(s, c) => 1.0
         A point *on* the circle has length 1; the mean of several lies inside it. How far from the middle?
-        np.hypot(s, c) => s + c
-        np.hypot(s, c) => abs(s) + abs(c)
-        You add the two coordinates of the mean point. Its length is the root of the sum of their squares.
     """),
     Exercise("07.2", residual_parts, uneven_weights, cases=[whole_numbers], mistakes="""
         rest = len(w) * w - copies => rest = w - copies
@@ -196,8 +189,6 @@ EXERCISES = [
         N is missing: a weight below 1 has floor 0. It is N times the weight that counts copies.
         len(w) => 10
         Your N is always 10, as in the lesson: it is len(w).
-        return copies => return np.maximum(copies, 1)
-        You give everybody a copy. Certain is only the whole part of N w: for a light particle that is 0.
     """),
     Exercise("07.3", expected_survivors, uneven_weights, cases=[all_equal, one_has_all, whole_numbers], mistakes="""
         np.sum(1 - (1 - w) ** len(w)) => np.sum((1 - w) ** len(w))
@@ -226,8 +217,6 @@ EXERCISES = [
         That is the effective sample size. It says how uneven the weights are, not how many are drawn.
         np.sum(1 - (1 - w) ** len(w)) => np.sum(np.minimum(1, len(w) * w))
         That is the number for systematic resampling. N independent draws may miss a particle with N w > 1.
-        np.sum(1 - (1 - w) ** len(w)) => np.sum(np.floor(len(w) * w) > 0)
-        You count those with N w of at least 1. Light particles may be drawn, and heavy ones missed.
         ... => return round(expected_survivors(w))
         A mean number need not be whole: do not round.
     """),
@@ -243,8 +232,6 @@ EXERCISES = [
         ... => return spread(w, x)
         ... => return spread(w, x) / len(w)
         You take the spread of all the x. Find the variance of each part's draw, add, then divide the root by N.
-        ... => return np.std(x) / np.sqrt(len(x))
-        That is the error of a plain mean of the old x. Where are the weights, and the parts of the strip?
         ... => return 0.0
         It is not zero: in a part that two fields share, chance decides which of them is picked.
         ... => order = np.argsort(-w); return stratified_error(w[order], x[order])
@@ -256,10 +243,10 @@ EXERCISES = [
         In each part your probabilities sum to 1/N. The point is in that part for certain: they sum to 1.
         variance += np.sum(p * (x - p @ x) ** 2) => variance += spread(p, x) and also np.sqrt(variance) => variance
         You add standard deviations. Of independent draws the *variances* add; the root comes last.
+        np.sqrt(variance) / n => np.sqrt(variance) / (n - 1)
+        The mean divides by N, not by N - 1: no variance is estimated here, all probabilities are known.
         np.sqrt(variance) / n => np.sqrt(variance)
         np.sqrt(variance) / n => np.sqrt(variance / n)
         That is for the *sum* of the new x. A factor 1/N enters a variance squared: N variances, divided by N * N.
-        np.sqrt(variance) / n => np.sqrt(variance) / (n - 1)
-        The mean divides by N, not by N - 1: no variance is estimated here, all probabilities are known.
     """),
 ]

@@ -226,8 +226,6 @@ EXERCISES = [
         Root *mean* square: divide the sum of the squares by T, before you take the root, not after the root.
         np.mean(errors**2) => np.sum(errors**2) / (len(errors) - 1)
         You divide by T - 1: that is for scatter about an estimated mean. Here it is the mean of T squares.
-        errors <= 0.30 => errors <= 0.10
-        Your limit is 0.10 m, one sigma of the paper. The table has three of them, 0.30 m.
         errors <= 0.30 => errors <= 3 * np.sqrt(np.mean(errors**2))
         You use three of the run's own sigma: a bad run would then get a wide gate. It is 0.30 m for all.
         np.mean(errors <= 0.30) => 100 * np.mean(errors <= 0.30)
@@ -275,8 +273,6 @@ EXERCISES = [
         Where the filter is never lost yours says frame 0 or the number of frames. The task asks for -1.
         ... => return -1
         Yours says -1 whatever the scores are. Does the -1 stand inside the loop? It belongs after it.
-        ... => return patience - 1 if (scores[:patience] < limit).all() else -1
-        Yours gives up at the first good score. That only starts the count again: go on.
     """),
     Exercise("08.4", effective_frames, length_and_likeness, "challenge", cases=[
         independent_frames, all_the_same, a_below_zero, four_frames, a_long_run,
@@ -287,8 +283,6 @@ EXERCISES = [
         Close: that is the limit of long runs. Near the ends a frame has fewer neighbours: sum over pairs.
         (n - k) * a**k => n * a**k
         How many pairs are k apart? Not n: only n - k.
-        (n - k) * a**k => (n - k + 1) * a**k
-        You count one pair too many at every distance: 4 frames have 3 pairs of neighbours.
         2 * pairs => pairs
         Every pair counts twice: frame 3 with frame 5, and frame 5 with frame 3.
         range(1, n) => range(n) and also n + 2 * pairs => 2 * pairs
