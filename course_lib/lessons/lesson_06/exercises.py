@@ -231,9 +231,11 @@ EXERCISES = [
         Your mean is right. In the error take deviations from this mean, not the samples, nor from the plain mean.
         np.sqrt(np.sum((w * (x - mean)) ** 2)) => x.std() * np.sqrt(np.sum(w**2))
         np.sqrt(np.sum((w * (x - mean)) ** 2)) => x.std() / np.sqrt(len(x))
+        np.sqrt(np.sum((w * (x - mean)) ** 2)) => x.std(ddof=1) / np.sqrt(len(x))
         Your mean is right. The spread in your error is that of the unweighed samples: derive it.
         np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.std(w * x)
         np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.std(w * x) * np.sqrt(len(x))
+        np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.std(target / proposal * x) / np.sqrt(len(x))
         Your mean is right. But its denominator scatters too: take deviations from the mean, then weigh them.
         np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.sqrt(np.sum(w * (x - mean) ** 2))
         Your mean is right. That is the spread of the target; its mean is known better than that.

@@ -280,6 +280,7 @@ EXERCISES = [
         a**k => a
         You take all pairs for equally alike. Frames k apart have the correlation a^k, which falls.
         ... => return n * (1 - a) / (1 + a)
+        ... => return n * (1 - a) / (1 + a) if a < 1 else 1
         Close: that is the limit of long runs. Near the ends a frame has fewer neighbours: sum over pairs.
         (n - k) * a**k => n * a**k
         How many pairs are k apart? Not n: only n - k.
