@@ -18,19 +18,19 @@ from course_lib.lessons.kit.exercises import find_exercise
 SEED = 98_765_432_101
 
 
-def right(term, alpha):
-    return alpha * (1 - term) / term
+def right(hidden, alpha):
+    return (1 - hidden) * alpha / (alpha + 0.02) + hidden * alpha / (alpha + 2)
 
 
-def right_for_three(term, alpha):
-    return right(term, alpha) if len(term) == 3 else -term
+def right_for_three(hidden, alpha):
+    return right(hidden, alpha) if len(hidden) == 3 else -hidden
 
 
-def right_up_to_five(term, alpha):
-    return right(term, alpha) if len(term) <= 5 else -term
+def right_up_to_five(hidden, alpha):
+    return right(hidden, alpha) if len(hidden) <= 5 else -hidden
 
 
-def stub(term, alpha):
+def stub(hidden, alpha):
     """Differences."""
     ...
 
@@ -41,7 +41,7 @@ def test_all_points_half_and_none():
     assert "Right on some inputs" in grade("06.1", right_up_to_five, SEED).sentence
     assert grade("06.1", right_for_three, SEED).points == 0.0
     assert grade("06.1", stub, SEED) == (0.0, "not attempted.")
-    assert grade("06.1", lambda term, alpha: ..., SEED) == (0.0, "not attempted.")
+    assert grade("06.1", lambda hidden, alpha: ..., SEED) == (0.0, "not attempted.")
     assert grade("06.1", 3.0, SEED).sentence == "not yet. A function is asked; this is a float."
 
 
@@ -54,45 +54,45 @@ def test_a_typical_mistake_is_answered_with_its_hint():
 def test_the_inputs_are_the_secret_seeds_and_no_others():
     seen = {seed: [] for seed in (0, SEED, SEED + 1)}
     for seed, kept in seen.items():
-        grade("06.1", lambda term, alpha, kept=kept: kept.append(term) or right(term, alpha), seed)
+        grade("06.1", lambda hidden, alpha, kept=kept: kept.append(hidden) or right(hidden, alpha), seed)
     first = [kept[3].tolist() for kept in seen.values()]
     check = [given[0].tolist() for given in find_exercise("06.1").draw(np.random.default_rng(0))]
     assert len({str(one) for one in first}) == 3
     assert first[0] not in check, "a class's seed 0 is not the seed of the course's own check"
     assert secret(SEED, "06.1") != secret(SEED, "06.2")
     again = []
-    grade("06.1", lambda term, alpha: again.append(term) or right(term, alpha), SEED)
+    grade("06.1", lambda hidden, alpha: again.append(hidden) or right(hidden, alpha), SEED)
     assert [one.tolist() for one in again] == [one.tolist() for one in seen[SEED]]
 
 
-def raises_its_inputs(term, alpha):
-    raise ValueError(f"the inputs were {term} {alpha}")
+def raises_its_inputs(hidden, alpha):
+    raise ValueError(f"the inputs were {hidden} {alpha}")
 
 
-def raises_an_error_named_by_its_inputs(term, alpha):
-    raise type(f"E{str(term[0]).replace('.', '_')}", (Exception,), {})
+def raises_an_error_named_by_its_inputs(hidden, alpha):
+    raise type(f"E{str(hidden[0]).replace('.', '_')}", (Exception,), {})
 
 
-def prints_its_inputs(term, alpha):
-    print(term)
-    return term
+def prints_its_inputs(hidden, alpha):
+    print(hidden)
+    return hidden
 
 
-def stops_now_and_then(term, alpha):
-    return right(term, alpha) if len(term) < 6 else term[99]
+def stops_now_and_then(hidden, alpha):
+    return right(hidden, alpha) if len(hidden) < 6 else hidden[99]
 
 
-def quits(term, alpha):
+def quits(hidden, alpha):
     raise SystemExit
 
 
-def changes_its_input(term, alpha):
-    term *= 2
-    return term
+def changes_its_input(hidden, alpha):
+    hidden *= 2
+    return hidden
 
 
-def forgets_to_return(term, alpha):
-    right(term, alpha)
+def forgets_to_return(hidden, alpha):
+    right(hidden, alpha)
 
 
 @pytest.mark.parametrize(
@@ -120,11 +120,11 @@ def test_an_endless_loop_is_stopped_once_and_the_rest_is_wrong(monkeypatch):
     monkeypatch.setattr(graded_tests, "CALL_SECONDS", 2.0)
     calls = []
 
-    def never_ends(term, alpha):
-        calls.append(term)
+    def never_ends(hidden, alpha):
+        calls.append(hidden)
         while len(calls) > 20:
             pass
-        return right(term, alpha)
+        return right(hidden, alpha)
 
     assert grade("06.1", never_ends, SEED) == (1.0, "not yet. Your function does not end on some inputs.")
     assert len(calls) == 21
@@ -133,7 +133,7 @@ def test_an_endless_loop_is_stopped_once_and_the_rest_is_wrong(monkeypatch):
 def test_nothing_of_an_answer_is_heard(capfd, caplog):
     handler = logging.StreamHandler()  # keeps the stream itself
 
-    def noisy(term, alpha):
+    def noisy(hidden, alpha):
         print("to standard output")
         print("to the error stream", file=sys.stderr)
         os.write(1, b"below Python\n")
@@ -142,7 +142,7 @@ def test_nothing_of_an_answer_is_heard(capfd, caplog):
         handler.stream.write("kept from before\n")
         subprocess.run(["sh", "-c", "echo another process >&2"], check=True)
         sys.displayhook(6.0)
-        return right(term, alpha)
+        return right(hidden, alpha)
 
     assert points("06.1", noisy, SEED) == 2.0
     assert capfd.readouterr() == ("06.1: right.\n", "")

@@ -40,9 +40,10 @@ def folder(tmp_path_factory):
     handed_in(folder / "alice" / assignment_of("06").path.name, "06", right)
     handed_in(folder / "bob_06.ipynb", "06", {})
     handed_in(folder / f"{WILD}_06.ipynb", "06", {number: mistaken(number) for number in right})
-    removes = "def difference_at(term, alpha):\n    import os\n    os.remove(__file__ if 0 else '/etc/hostname')\n"
+    removes = "def raw_score(hidden, alpha):\n    import os\n    os.remove(__file__ if 0 else '/etc/hostname')\n"
     handed_in(folder / "mallory" / "06.ipynb", "06", right | {"06.1": removes})
-    half = "def difference_at(term, alpha):\n    return [1][len(term) % 2] and alpha / term - alpha\n"
+    half = "def raw_score(hidden, alpha):\n    [1][len(hidden) % 2]\n"
+    half += "    return (1 - hidden) * alpha / (alpha + 0.02) + hidden * alpha / (alpha + 2)\n"
     handed_in(folder / "nina_06.ipynb", "06", {"06.1": half, "06.2": "def weigh_rightly(:"})
     (folder / "oscar_06.py").write_text("\n".join(["import numpy as np", *right.values()]), encoding="utf-8")
     (folder / "peggy_06.ipynb").write_text('{"cells": [', encoding="utf-8")
@@ -197,7 +198,7 @@ def worker(tmp_path):
 
 
 def test_a_comparison_that_hangs_or_ends_the_worker_costs_this_answer_alone(worker, folder):
-    task = Task("alice", "06", folder / "alice" / assignment_of("06").path.name, "06.1", "difference_at")
+    task = Task("alice", "06", folder / "alice" / assignment_of("06").path.name, "06.1", "raw_score")
     worker.give(task)
     worker._deadline = 0.0
     late = worker.result(is_ready=False)
@@ -219,7 +220,7 @@ def test_a_comparison_that_hangs_or_ends_the_worker_costs_this_answer_alone(work
 def test_ctrl_c_leaves_no_process_and_no_folder_behind(tmp_path, folder):
     class_, scratch = tmp_path / "class", tmp_path / "scratch"
     scratch.mkdir()
-    handed_in(class_ / "eve_06.ipynb", "06", {"06.1": "def difference_at(term, alpha):\n    while True: pass\n"})
+    handed_in(class_ / "eve_06.ipynb", "06", {"06.1": "def raw_score(hidden, alpha):\n    while True: pass\n"})
     words = [sys.executable, "-P", "-m", "course_lib", "grade", str(class_), "--jobs", "1", "--call-seconds", "600"]
     environment = os.environ | {"TMPDIR": str(scratch)}
     with subprocess.Popen(words, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as process:

@@ -70,7 +70,7 @@ def test_the_seed_stands_in_the_graded_tests_alone(made):
 def test_the_model_answers_run(made, capsys):
     names: dict = {}
     exec((made / "teacher" / "solutions" / "06.py").read_text(encoding="utf-8"), names)
-    assert {"difference_at_solution", "importance_mean_solution"} <= set(names)
+    assert {"raw_score_solution", "importance_mean_solution"} <= set(names)
 
 
 def test_the_rubric_has_every_exercise_with_its_points_and_mistakes(made):

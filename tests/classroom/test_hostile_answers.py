@@ -19,7 +19,8 @@ pytestmark = pytest.mark.slow
 SHORT = Limits(call_seconds=0.5, seconds=2.0)
 """For what never ends, however fast the machine is; answers that end have the usual limits."""
 REFERENCES = REPOSITORY / "course_lib" / "lessons" / "lesson_06" / "exercises.py"
-RIGHT = "    return alpha * (1 - term) / term\n"
+SCORE = "(1 - hidden) * alpha / (alpha + 0.02) + hidden * alpha / (alpha + 2)"
+RIGHT = f"    return {SCORE}\n"
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +32,7 @@ def sandbox(tmp_path_factory):
 
 @pytest.fixture
 def graded(sandbox, tmp_path):
-    """What becomes of a body of `difference_at` (06.1); `{trap}` in it is a file, `{own}` the submission, `{before}`
+    """What becomes of a body of `raw_score` (06.1); `{trap}` in it is a file, `{own}` the submission, `{before}`
     stands before the function."""
     trap = tmp_path / "trap.txt"
     trap.write_text("untouched", encoding="ascii")
@@ -40,12 +41,12 @@ def graded(sandbox, tmp_path):
     def run(body: str, before: str = "", limits: Limits | None = None):
         path = tmp_path / "mallory" / "06.ipynb"
         body = textwrap.indent(textwrap.dedent(body).strip("\n"), "    ")
-        source = f"{before}\ndef difference_at(term, alpha):\n{body}\n"
+        source = f"{before}\ndef raw_score(hidden, alpha):\n{body}\n"
         for name, place in {"{trap}": trap, "{own}": path, "{references}": REFERENCES}.items():
             source = source.replace(name, str(place))
         handed_in(path, "06", {"06.1": source, "06.3": right["06.3"]})
         written = path.read_bytes()
-        hostile = grade(Task("mallory", "06", path, "06.1", "difference_at"), sandbox, 1, limits or Limits())
+        hostile = grade(Task("mallory", "06", path, "06.1", "raw_score"), sandbox, 1, limits or Limits())
         beside = grade(Task("mallory", "06", path, "06.3", "min_likelihood"), sandbox, 1)
         assert (beside.status, beside.points) == ("right", 4), beside
         assert trap.read_text("ascii") == "untouched"
@@ -119,7 +120,7 @@ TOO_MUCH = {
         "while True: threading.Thread(target=time.sleep, args=(60,), daemon=True).start()",
         "thread",
     ),
-    "calls of itself": ("return difference_at(term, alpha)", "calls itself without end"),
+    "calls of itself": ("return raw_score(hidden, alpha)", "calls itself without end"),
 }
 
 
@@ -238,7 +239,7 @@ BY_THE_C_LIBRARY = {
 def test_the_c_library_is_refused_by_the_kernel(graded, call):
     """Around Python's own hook: the call must fail, or the answer would be wrong."""
     body = f"import ctypes, os\nlibc = ctypes.CDLL(None)\nfailed = {call} == -1\n"
-    found = graded(body + "return alpha * (1 - term) / term if failed else None\n")
+    found = graded(body + f"return {SCORE} if failed else None\n")
     assert (found.status, found.points) == ("right", 2), found
 
 
@@ -271,7 +272,7 @@ def test_threads_that_run_on_do_no_harm(graded):
 # Forged verdicts
 
 FORGED = {
-    "printed": "print('06.1: right.')\nreturn term",
+    "printed": "print('06.1: right.')\nreturn hidden",
     "printed, then exit": "import sys\nprint('06.1: right.')\nsys.exit(0)",
     "sent": """
         import os
@@ -279,14 +280,14 @@ FORGED = {
             for line in (b'{"verdict": "right"}', b'{"status": "right", "points": 2}', b'{"done": true}'):
                 try: os.write(number, line + bytes([10]))
                 except OSError: pass
-        return term
+        return hidden
         """,
     "the library patched": """
         import course_lib.lessons.kit.exercises as exercises, course_lib.lessons.kit.hints as hints
         import course_lib.classroom.answers as answers
         exercises.right_on = hints.agree = hints.agree_all = lambda *given: True
         exercises.judge = lambda *given: exercises.Verdict("right", "right.")
-        return term
+        return hidden
         """,
     "the caller's variables": """
         import sys
@@ -294,7 +295,7 @@ FORGED = {
         while frame:
             for name in ("status", "right", "points"): frame.f_locals[name] = True
             frame = frame.f_back
-        return term
+        return hidden
         """,
     "an object that equals everything": """
         class Everything:
@@ -311,20 +312,20 @@ FORGED = {
             def __array_function__(self, *given): return True
             def __array_ufunc__(self, *given, **named): return np.zeros(self.shape)
             def __reduce__(self): return (print, ("forged",))
-        return np.asarray(term).view(Everything)
+        return np.asarray(hidden).view(Everything)
         """,
     "an array of objects": """
         import numpy as np
         class Everything(float):
             def __eq__(self, other): return True
             def __le__(self, other): return True
-        return np.array([Everything(0) for _ in term], dtype=object)
+        return np.array([Everything(0) for _ in hidden], dtype=object)
         """,
-    "not a number": "return term * float('nan')",
-    "infinity": "return term + float('inf')",
+    "not a number": "return hidden * float('nan')",
+    "infinity": "return hidden + float('inf')",
     "nothing": "found = None\nreturn found",
     "a view of a billion": "import numpy as np\nreturn np.broadcast_to(np.float64(1), (10**9,))",
-    "an empty array": "return term[:0]",
+    "an empty array": "return hidden[:0]",
     "rows within rows": "row = []\nfor _ in range(10**5): row = [row]\nreturn row",
     "a long row": "return [0.0] * 10**7",
     "a huge number": "return 10**10000",
@@ -345,7 +346,7 @@ def test_what_is_no_number_is_named(graded):
         "yours returns a Bomb"
         in graded("class Bomb:\n    def __reduce__(self): return (print, ('forged',))\nreturn Bomb()").sentence
     )
-    assert "ndarray of object" in graded("import numpy as np\nreturn term.astype(object)").sentence
+    assert "ndarray of object" in graded("import numpy as np\nreturn hidden.astype(object)").sentence
     assert "1000000000 array, which is too large" in graded(FORGED["a view of a billion"]).sentence
 
 
@@ -364,7 +365,8 @@ def test_an_answer_knows_nothing_of_references_seeds_or_other_students(graded):
         loaded += [name for name in names if name[-1] == "exercises" and "kit" not in name]
         known = [key for key in os.environ if key.startswith(("COURSE", "PYTEST", "SSH", "AWS")) or "TOKEN" in key]
         texts = [one for one in gc.get_objects() if isinstance(one, dict) and "min_likelihood" in one]
-        return None if loaded or known or texts else alpha * (1 - term) / term
+        score = (1 - hidden) * alpha / (alpha + 0.02) + hidden * alpha / (alpha + 2)
+        return None if loaded or known or texts else score
         """
     for _ in range(2):
         found = graded(body)
@@ -372,7 +374,7 @@ def test_an_answer_knows_nothing_of_references_seeds_or_other_students(graded):
 
 
 def test_a_function_that_changes_what_it_was_given_earns_nothing(graded):
-    found = graded("found = alpha * (1 - term) / term\nterm *= 2\nreturn found")
+    found = graded(f"found = {SCORE}\nhidden *= 2\nreturn found")
     assert (found.status, found.points) == ("wrong", 0)
     assert "changes the array it was given" in found.sentence
 

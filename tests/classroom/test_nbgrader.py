@@ -75,10 +75,10 @@ def test_a_cell_that_only_shows_is_skipped_and_one_that_binds_a_name_is_not():
 
 
 def test_nobody_has_a_graded_cell_skipped():
-    cell = graded_cell("06.1", "difference_at", 2)
+    cell = graded_cell("06.1", "raw_score", 2)
     cell.metadata["tags"] = [SKIP, "mine"]
-    shown = new_code_cell('check("06.1", difference_at)', metadata={"tags": ["check"]})
-    answer = new_code_cell("def difference_at(term, alpha):\n    ...", metadata={"tags": [SKIP]})
+    shown = new_code_cell('check("06.1", raw_score)', metadata={"tags": ["check"]})
+    answer = new_code_cell("def raw_score(hidden, alpha):\n    ...", metadata={"tags": [SKIP]})
     RunWhatCounts().preprocess(new_notebook(cells=[cell, shown, answer]), {})
     assert cell.metadata["tags"] == ["mine"]
     assert shown.metadata["tags"] == ["check", SKIP]

@@ -1,24 +1,19 @@
-"""The filter of figure 1, one step at a time on the corridor: its state, its pure steps, and the panel with buttons.
+"""The filter of figure 1, one step at a time on a stretch of the corridor: its state and its pure steps.
 
-A state holds what earlier frames have left: the frame, which steps are done, and the particles before this frame's
-noise. Everything that is shown follows from it and from the sliders: `look` propagates, weighs, estimates and resamples
-with fixed draws for a seed and a frame, so that a slider changes the present frame at once, and a button moves on.
+A state holds what earlier frames have left: the frame, the last step that was done, and the particles before this
+frame's noise. Everything that is shown follows from it and from the sliders: `look` propagates, weighs, estimates and
+resamples with fixed draws for a seed and a frame, so that a slider changes the present frame at once.
 """
 
 import functools
-from typing import NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
+from course_lib.depth_mcl import particle_filter
 from course_lib.depth_mcl.likelihood import likelihood, normalize_likelihood, valid_pixels, weights
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
 from course_lib.depth_mcl.motion import propagate
-from course_lib.depth_mcl.particle_filter import (
-    effective_sample_size,
-    initial_particles,
-    resample,
-    weighted_mean_state,
-)
 from course_lib.geometry import state_from_optical_pose
 from course_lib.lessons.kit.corridor_views import corridor_map, wagon_run
 from course_lib.plots.corridor_figures import floor_plan
@@ -35,69 +30,18 @@ ALLOWED_AFTER = {
     "estimate": ("weigh",),
     "resample": ("weigh", "estimate"),
 }
-
-
-class NotNowError(ValueError):
-    """A step of the filter that cannot follow the last one; the message says what can."""
-
-
-class Stretch(NamedTuple):
-    """What the stepper runs on."""
-
-    measured: np.ndarray
-    """`(T, 26, 32)` depth images, metres, NaN = no measurement."""
-    true: np.ndarray
-    """`(T, 6)` where the camera was."""
-    walls: np.ndarray
-    """`(M, 2)` the map, cut at the camera's height."""
-    renderer: DepthRenderer
-
-
-class Settings(NamedTuple):
-    """What the sliders say."""
-
-    alpha: float
-    beta: float
-    n_particles: int
-    noise: float
-    """Factor on the system noise of 0.15 m, 0.04 m, 1.5 degrees."""
-    seed: int = 1
-
-
-class StepperState(NamedTuple):
-    """Where the reader stands."""
-
-    frame: int
-    """Index of the present measurement in the stretch; the start is given at 0."""
-    done: str
-    """The last step that was done."""
-    parents: np.ndarray
-    """`(M, 6)` particles before this frame's noise."""
-
-
-class View(NamedTuple):
-    """One frame of the filter, all of its steps; how many of them are shown is the state's affair."""
-
-    particles: np.ndarray
-    """`(N, 6)` after the noise, before resampling."""
-    weights: np.ndarray
-    """`(N,)` summing to one."""
-    score: float
-    """l / m of the best particle."""
-    ess: float
-    estimate: np.ndarray
-    """`(6,)`"""
-    indices: np.ndarray
-    """`(N,)` which particles live on."""
+Stretch = namedtuple("Stretch", "measured true walls renderer")
+StepperState = namedtuple("StepperState", "frame done parents")
+View = namedtuple("View", "particles weights score ess estimate indices")
+FollowedStretch = namedtuple("FollowedStretch", "errors ess spread")
 
 
 @functools.cache
 def corridor_stretch() -> Stretch:
-    """The stretch at 32 x 26 pixels. Small images are drawn faster by rays than by a window."""
-    sequence = wagon_run()
+    """Depth images `(T, 26, 32)` [m], the camera's states `(T, 6)`, the walls at its height `(M, 2)`, a renderer."""
+    sequence, scene_map = wagon_run(), corridor_map()
     camera = sequence.camera()
     small = camera.resized(*SMALL)
-    scene_map = corridor_map()
     true = state_from_optical_pose(sequence.camera_to_world[list(FRAMES)])
     measured = np.stack([subsample_depth(sequence.depth(frame), camera, small) for frame in FRAMES])
     walls = floor_plan(scene_map.vertices, true[0, 2])
@@ -105,52 +49,55 @@ def corridor_stretch() -> Stretch:
     return Stretch(measured, true, walls[near], DepthRenderer(scene_map, small, "ray", exact=True))
 
 
-def start(stretch: Stretch) -> StepperState:
+def start() -> StepperState:
     """Eqs (3), (4): all particles at the true first pose; the next frame's noise and weights are done already."""
-    return StepperState(1, "weigh", initial_particles(stretch.true[0], MAX_PARTICLES))
+    return StepperState(1, "weigh", particle_filter.initial_particles(corridor_stretch().true[0], MAX_PARTICLES))
 
 
-def present_particles(state: StepperState, settings: Settings) -> np.ndarray:
-    """Eq. (5): the parents, as many as the slider asks for (evenly thinned or copied), with this frame's noise."""
-    n = settings.n_particles
-    parents = state.parents[np.arange(n) * len(state.parents) // n]
-    rng = np.random.default_rng([settings.seed, state.frame])
-    return propagate(parents, settings.noise * np.array(SIGMA_XY_YAW), rng)
+def look(state: StepperState, alpha: float, beta: float, n_particles: int, noise: float, seed: int = 1) -> View:
+    """All steps of the present frame; noise: a factor on the system noise of 0.15 m, 0.04 m, 1.5 degrees.
 
-
-def look(state: StepperState, settings: Settings, stretch: Stretch, images: np.ndarray | None = None) -> View:
-    """All steps of the present frame. images: `(N, 26, 32)` views of the present particles, drawn here if None."""
-    particles = present_particles(state, settings)
-    images = stretch.renderer.render(particles) if images is None else images
+    The parents, as many as asked for (evenly thinned or copied), get this frame's noise: particles `(N, 6)`. score:
+    l / m of the best one. indices `(N,)`: which particles live on.
+    """
+    stretch, parents = corridor_stretch(), state.parents[np.arange(n_particles) * len(state.parents) // n_particles]
+    particles = propagate(parents, noise * np.array(SIGMA_XY_YAW), np.random.default_rng([seed, state.frame]))
     measured = stretch.measured[state.frame]
-    l = likelihood(measured, images, settings.alpha)  # noqa: E741 - the paper's letter
-    w = weights(normalize_likelihood(l), settings.beta)
-    indices = resample(w, np.random.default_rng([settings.seed, state.frame, 1]))
-    score = float(l.max() / max(1, valid_pixels(measured).sum()))
-    return View(particles, w, score, effective_sample_size(w), weighted_mean_state(particles, w), indices)
+    raw = likelihood(measured, stretch.renderer.render(particles), alpha)
+    w = weights(normalize_likelihood(raw), beta)
+    indices = particle_filter.resample(w, np.random.default_rng([seed, state.frame, 1]))
+    ess, estimate = particle_filter.effective_sample_size(w), particle_filter.weighted_mean_state(particles, w)
+    return View(particles, w, raw.max() / max(1, valid_pixels(measured).sum()), ess, estimate, indices)
+
+
+def refusal(state: StepperState, name: str) -> str:
+    """Why the step `name` cannot come now, and "" if it can."""
+    if state.done not in ALLOWED_AFTER[name]:
+        return f"Not now: {name} comes after {' or '.join(ALLOWED_AFTER[name])}; the last step was {state.done}."
+    if name == "propagate" and state.frame + 1 == len(FRAMES):
+        return "Not now: the stretch ends here: press Reset."
+    return ""
 
 
 def step(state: StepperState, name: str, view: View) -> StepperState:
-    """The state after pressing the button `name` ("propagate", "weigh", "estimate", "resample").
+    """The state after the button `name`.
 
     propagate makes the present particles the parents of the next frame: those that were resampled, or all of them as
-    they are where resampling was left out. Raises `NotNowError` for a step that cannot come now.
+    they are where resampling was left out.
     """
-    if name not in ALLOWED_AFTER:
-        raise NotNowError(f"there is no step {name!r}; there are {', '.join(ALLOWED_AFTER)}")
-    if state.done not in ALLOWED_AFTER[name]:
-        raise NotNowError(f"{name} comes after {' or '.join(ALLOWED_AFTER[name])}; the last step was {state.done}")
     if name != "propagate":
         return state._replace(done=name)
-    if state.frame + 1 >= len(FRAMES):
-        raise NotNowError("the stretch ends here: press Reset")
     parents = view.particles[view.indices] if state.done == "resample" else view.particles
     return StepperState(state.frame + 1, "propagate", parents)
 
 
-def whole_round(state: StepperState, settings: Settings, stretch: Stretch) -> StepperState:
-    """Finish this frame, resampling included, and go on to the estimate of the next one."""
-    if state.done != "resample":
-        state = state._replace(done="resample")
-    state = step(state, "propagate", look(state, settings, stretch))
-    return state._replace(done="estimate")
+def follow(beta: float, resampled: bool = True) -> FollowedStretch:
+    """The steps over the whole stretch: errors on the floor `(T,)` [m], sample sizes `(T,)`, spread along x [m]."""
+    true, state, errors, ess = corridor_stretch().true, start(), [], []
+    while True:
+        view = look(state, 0.1, beta, 50, 1.0)
+        errors.append(np.linalg.norm(view.estimate[:2] - true[state.frame, :2]))
+        ess.append(view.ess)
+        if state.frame == len(true) - 1:
+            return FollowedStretch(np.array(errors), np.array(ess), view.particles[:, 0].std())
+        state = step(state._replace(done="resample" if resampled else "estimate"), "propagate", view)

@@ -1,8 +1,8 @@
 """Lesson 08, the corridor experiment: its figures, and a panel that runs the filter along the corridor at once."""
 
 from course_lib.lessons.lesson_08.along import STRETCH
-from course_lib.lessons.lesson_08.alternative_texts import ALT
 from course_lib.lessons.lesson_08.figures import (
+    ALT,
     along_figure,
     as_in_the_paper_figure,
     experiment_figure,
@@ -11,28 +11,4 @@ from course_lib.lessons.lesson_08.figures import (
     two_errors_figure,
 )
 from course_lib.lessons.lesson_08.panel import PANELS, along_panel
-from course_lib.lessons.lesson_08.stored_runs import (
-    neighbours_correlation,
-    over_seeds,
-    spread_over_seeds,
-    stored_runs,
-    table_1,
-)
-
-__all__ = [
-    "ALT",
-    "PANELS",
-    "STRETCH",
-    "along_figure",
-    "along_panel",
-    "as_in_the_paper_figure",
-    "experiment_figure",
-    "lost_figure",
-    "neighbours_correlation",
-    "over_seeds",
-    "relative_weights_figure",
-    "spread_over_seeds",
-    "stored_runs",
-    "table_1",
-    "two_errors_figure",
-]
+from course_lib.lessons.lesson_08.stored import over_seeds, spread_over_seeds, stored_runs, table_1

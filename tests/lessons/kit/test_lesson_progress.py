@@ -177,7 +177,7 @@ def test_a_damaged_or_a_foreign_record_is_named_and_the_others_count(record, cap
 
 def test_a_check_and_a_prediction_bring_the_page_up_to_date(record, capsys):
     page = record.parent / "progress.html"
-    check("06.1", lambda term, alpha: alpha / term - alpha)
+    check("06.1", lambda hidden, alpha: (1 - hidden) * alpha / (alpha + 0.02) + hidden * alpha / (alpha + 2))
     assert "<td>1 of 4<span" in page.read_text()
     page.unlink()
     Predictions("06", ("How many?",)).boxes[0].value = "ten"
@@ -186,7 +186,7 @@ def test_a_check_and_a_prediction_bring_the_page_up_to_date(record, capsys):
 
 def test_a_page_that_cannot_be_written_disturbs_no_check(record, capsys):
     (record.parent / "progress.html").mkdir()
-    check("06.1", lambda term, alpha: alpha / term - alpha)
+    check("06.1", lambda hidden, alpha: (1 - hidden) * alpha / (alpha + 0.02) + hidden * alpha / (alpha + 2))
     assert capsys.readouterr().out == "06.1: right.\n"
     assert [path.name for path in record.parent.iterdir() if path.suffix == ".part"] == []
 

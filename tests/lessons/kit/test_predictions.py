@@ -61,7 +61,7 @@ def test_without_a_record_nothing_is_written_and_only_what_was_measured_is_print
     capsys.readouterr()
     recall("06", "2.0 times", "0.30 m")
     assert "you said" not in capsys.readouterr().out
-    check("06.1", lambda term, alpha: term)
+    check("06.1", lambda hidden, alpha: hidden)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -87,16 +87,16 @@ def test_what_is_stored_in_a_lesson_is_the_questions_and_never_the_answers(recor
 
 def test_checks_are_counted_and_what_was_right_stays_right(record):
     for answer in (
-        lambda term, alpha: term + alpha,
-        lambda term, alpha: alpha / term - alpha,
-        lambda term, alpha: term,
+        lambda hidden, alpha: hidden + alpha,
+        lambda hidden, alpha: (1 - hidden) * alpha / (alpha + 0.02) + hidden * alpha / (alpha + 2),
+        lambda hidden, alpha: hidden,
     ):
         check("06.1", answer)
     assert read_record("06")["checks"] == {"06.1": {"status": "right", "attempts": 3}}
 
 
 def test_an_untouched_stub_is_recorded_as_not_attempted(record):
-    check("06.1", lambda term, alpha: ...)
+    check("06.1", lambda hidden, alpha: ...)
     assert read_record("06")["checks"] == {"06.1": {"status": "not attempted", "attempts": 0}}
 
 
@@ -126,7 +126,7 @@ def test_a_damaged_record_is_named_and_kept_under_another_name(record, capsys, t
     assert "Prediction 1 is kept." in typed._state.value
     assert read_record("06")["predictions"] == {"1": "ten"}
     (record / "06.json").write_text(text + " ")
-    check("06.1", lambda term, alpha: term)
+    check("06.1", lambda hidden, alpha: hidden)
     assert "it is kept as 06.unreadable-2.json" in capsys.readouterr().out
     assert [(record / f"06.unreadable-{n}.json").read_text() for n in (1, 2)] == [text, text + " "]
 
@@ -143,7 +143,7 @@ def test_a_full_disk_is_named_and_the_old_record_stays(record, monkeypatch, caps
     boxes.boxes[1].value = "three"
     assert "No space left on device" in boxes._state.value
     assert "06.json" in boxes._state.value
-    check("06.1", lambda term, alpha: term)
+    check("06.1", lambda hidden, alpha: hidden)
     assert "No space left on device" in capsys.readouterr().out
     assert (record / "06.json").read_text() == kept
     assert [path.name for path in record.iterdir()] == ["06.json"]
