@@ -15,14 +15,13 @@ A new lesson NN needs a notebook and a folder:
   exercise (the stub), check, hint, solution (with `metadata.jupyter.source_hidden = true`).
 * `lessons/lesson_NN/`. The notebook imports only the package itself.
   `__init__.py` exports what the notebook calls as `lesson_NN.something`, and `PANELS`.
-  `figures.py`: make a figure with `figures.new_figure` and show it with `show(figure, alt=lesson_NN.ALT["name"])`.
-  `alternative_texts.py`: `ALT` says what each figure shows, by name. It is not in the cells, because it may give
-  answers away.
+  `figures.py`: functions that make a figure with `figures.new_figure` and return `described(figure, "what it shows")`,
+  which the notebook hands to `show`. The alternative text is not in the cells, because it may give answers away.
   A scene starts with `plots.scenes.new_plotter`. The notebook's own cell adds the objects (`plots.scenes`,
   `kit.scene_objects`, PyVista) and shows them with `show_scene(plotter, "NN_name", title=..., alt=...)`.
   `panel.py`: `PANELS = {title: function that makes the panel}`. A panel's figure is a `LiveFigure`. Its `draw` is a
   plain function that takes the controls' values and returns a `Drawing`.
-  `exercises.py`: `EXERCISES`, each with a reference, an input generator, and three or more mistakes with hints.
+  `exercises.py`: `EXERCISES`, each with a solution, an input generator, and mistakes as edits of it with hints.
   Code that these files share (scenes, data, measurements) has its own modules, named after their contents.
 
 A project n needs `notebooks/projects/Pn_title.ipynb` and `lessons/project_n/`. Its `exercises.py` holds the stages, as

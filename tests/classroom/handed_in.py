@@ -1,14 +1,12 @@
 """Submissions as students hand them in: a lesson's notebook with answers in place of its stubs."""
 
-import ast
-import inspect
 import json
-import textwrap
 from pathlib import Path
 
 from course_lib.classroom.assignment_cells import Assignment, read_assignments, tag_of
 from course_lib.classroom.model_answers import function_name, model_bodies, solved_stub
 from course_lib.lessons.kit.exercises import find_exercise
+from course_lib.lessons.kit.mistakes import ARROW, WHOLE_BODY, edited_text
 
 
 def assignment_of(name: str) -> Assignment:
@@ -36,31 +34,9 @@ def solved(name: str) -> dict[str, str]:
     return {one.number: solved_stub(one.stub, bodies[function_name(one.stub)]) for one in assignment.exercises()}
 
 
-def mistaken(number: str, which: int = 0) -> str | None:
-    """A known mistake of an exercise as a student's cell; None where the exercise does not write it out.
-
-    The module of the exercises stands before it, as whoever made the mistake would have typed the same thoughts.
-    """
-    assignment = assignment_of(number.partition(".")[0])
-    name = next(function_name(one.stub) for one in assignment.exercises() if one.number == number)
-    tree = ast.parse(inspect.getsource(inspect.getmodule(find_exercise(number).reference)))
-    (exercises,) = (node for node in tree.body if "EXERCISES" in _assigned(node))
-    tree.body.remove(exercises)
-    mistakes = [
-        call.args[0]
-        for exercise in exercises.value.elts
-        if any(part.arg == "number" and ast.literal_eval(part.value) == number for part in exercise.keywords)
-        for call in ast.walk(exercise)
-        if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "Mistake" and call.args
-    ]
-    if not mistakes:
-        return None
-    tree.body = [node for node in tree.body if getattr(node, "module", None) != "__future__"]
-    inner = f"{ast.unparse(tree)}\nreturn {ast.unparse(mistakes[which % len(mistakes)])}"
-    maker = f"make_{number.replace('.', '_')}"
-    return f"def {maker}():\n{textwrap.indent(inner, '    ')}\n\n{name} = {maker}()\n"
-
-
-def _assigned(node: ast.stmt) -> list[str]:
-    targets = node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AnnAssign) else []
-    return [target.id for target in targets if isinstance(target, ast.Name)]
+def mistaken(number: str, which: int = 0) -> str:
+    """A known mistake of an exercise as a student's cell: one of the edits that change a part of the solution."""
+    exercise = find_exercise(number)
+    lines = exercise.mistakes.splitlines()
+    edits = [line for line in lines if ARROW in line and not line.strip().startswith(WHOLE_BODY)]
+    return edited_text(exercise.solution, edits[which % len(edits)])

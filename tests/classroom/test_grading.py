@@ -82,7 +82,7 @@ def test_a_typical_mistake_gets_its_own_hint(results):
     from course_lib.lessons.kit.exercises import find_exercise
 
     for number, one in of(results, WILD).items():
-        assert one.sentence == find_exercise(number).known[0].hint
+        assert one.sentence in [mistake.hint for mistake in find_exercise(number).known]
         assert one.status in ("wrong", "partly right")
 
 
