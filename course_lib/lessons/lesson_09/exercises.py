@@ -68,7 +68,7 @@ def unbalanced(given, R):
         return "The result must be a matrix of shape (3, 3)."
     if not np.allclose(R.T @ R, np.eye(3), atol=1e-6):
         return "Your matrix is no rotation: its columns must have length 1 and stand at right angles."
-    return "Seen from your R the vectors do not balance. Which one is turned back in R' R_i, and on which side do you step?"
+    return "Seen from your R the vectors do not balance: which rotation is turned back, and on which side do you step?"
 
 
 # 09.3: is a covariance honest?
