@@ -1,7 +1,6 @@
 """Lesson 09's panel: Gauss-Newton on one depth image, from any start, step by step."""
 
 import functools
-from typing import NamedTuple
 
 import numpy as np
 from matplotlib import colormaps
@@ -11,60 +10,53 @@ from course_lib.beyond.six_dof.refinement import gauss_newton_step, surface_norm
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider
-from course_lib.lessons.lesson_09.basin import levels
-from course_lib.lessons.lesson_09.hand import hand_run
+from course_lib.lessons.lesson_09.runs import hand_run, levels
 from course_lib.plots import figures
 
-FRAME = 60
-STEPS = 12
+FRAME, STEPS = 60, 12
 SCALES = {"0.03": 0.03, "0.05": 0.05, "0.1": 0.1, "0.25": 0.25, "none": 1e6}  # metres; none: every pixel counts alike
-_SHOWN = 0.3  # metres of residual at the ends of the colours
-
-
-class Descent(NamedTuple):
-    """Gauss-Newton from one start: before the first step, after it, and so on."""
-
-    poses: np.ndarray
-    """`(STEPS + 1, 4, 4)`."""
-    images: np.ndarray
-    """`(STEPS + 1, H, W)` of the map from there [m]."""
-    position: np.ndarray
-    """`(STEPS + 1,)` error [m]."""
-    rotation: np.ndarray
-    """`(STEPS + 1,)` error [degrees]."""
+SHOWN = 0.3  # metres of residual at the ends of the colours
+CONTROLS = [
+    Slider("forward", "start forward by [m]", -0.8, 0.8, 0.2, 0.05),
+    Slider("left", "start left by [m]", -0.8, 0.8, 0.0, 0.05),
+    Slider("turned", "start turned left by [degrees]", -40, 40, 6, 1),
+    Choice("scale", "robust scale [m]", tuple(SCALES), "0.1"),
+    Slider("step", "steps done", 0, STEPS, 0, 1),
+]
+ACTIONS = {
+    "Next step": lambda values: {"step": min(values["step"] + 1, STEPS)},
+    "Back": lambda values: {"step": max(values["step"] - 1, 0)},
+}
 
 
 @functools.lru_cache(maxsize=32)
-def descend(forward: float, left: float, turned_deg: float, scale: float) -> Descent:
-    """All steps from the true pose moved along and turned about the camera's own axes (right, down, forward)."""
+def descend(forward: float, left: float, turned_deg: float, scale: float) -> tuple:
+    """Step from the true pose, moved and turned about the camera's own axes (right, down, forward).
+
+    Return, before the first step and after each of `STEPS`: images of the map `(n, H, W)` [m], how far each measured
+    point lies from the surface seen in its pixel `(n, H, W)` [m], and the errors `(n,)` [m] and `(n,)` [degrees].
+    """
     level, true = levels()[1], hand_run().camera_to_world[FRAME]
     level.measure(hand_run().depth(FRAME))
     camera = level.renderer.camera
-    pose = retract(true, np.array([-left, 0.0, forward, 0.0, -np.deg2rad(turned_deg), 0.0]))[None]
-    poses, images = [pose[0]], [level.renderer.render_poses(pose)[0]]
+    poses = [retract(true, np.array([-left, 0.0, forward, 0.0, -np.deg2rad(turned_deg), 0.0]))[None]]
+    images = [level.renderer.render_poses(poses[0])]
     for _ in range(STEPS):
-        pose = gauss_newton_step(level.measured, images[-1][None], camera, pose, scale)
-        poses.append(pose[0])
-        images.append(level.renderer.render_poses(pose)[0])
-    position, rotation = pose_errors(np.array(poses), np.tile(true, (STEPS + 1, 1, 1)))
-    return Descent(np.array(poses), np.array(images), position, np.rad2deg(rotation))
-
-
-def residuals(image: np.ndarray) -> np.ndarray:
-    """How far each measured point lies from the map's surface seen in its pixel, `(H, W)` metres, along the normal."""
-    level = levels()[1]
-    camera = level.renderer.camera
-    q, n = surface_normals(image[None].astype(np.float64), camera)
-    return np.sum(n * (camera.points(level.measured) - q), axis=-1)[0]
+        poses.append(gauss_newton_step(level.measured, images[-1], camera, poses[-1], scale))
+        images.append(level.renderer.render_poses(poses[-1]))
+    images, poses = np.concatenate(images), np.concatenate(poses)
+    q, n = surface_normals(images.astype(np.float64), camera)
+    position, rotation = pose_errors(poses, np.tile(true, (STEPS + 1, 1, 1)))
+    return images, np.sum(n * (camera.points(level.measured) - q), axis=-1), position, np.rad2deg(rotation)
 
 
 def refinement_panel() -> Panel:
     """Move the start, choose how robust, and step."""
     figure, (seen, off, errors) = figures.new_figure(1, 3, size=(10.2, 3.0))
-    blank = np.full(levels()[1].measured.shape, np.nan)
+    blank = np.full(levels()[1].renderer.camera.shape, np.nan)
     drawn = figures.depth_image(seen, blank, "The map, from the pose now", (0, 8))
     figures.colour_bar(figure, drawn, seen)
-    apart = figures.depth_image(off, blank, "Measured point off the surface", (-_SHOWN, _SHOWN))
+    apart = figures.depth_image(off, blank, "Measured point off the surface", (-SHOWN, SHOWN))
     apart.set_cmap(colormaps["PuOr"].with_extremes(bad=(1, 1, 1, 0)))
     figures.colour_bar(figure, apart, off, "r [m]")
     steps = np.arange(STEPS + 1)
@@ -79,36 +71,25 @@ def refinement_panel() -> Panel:
     live = LiveFigure(figure, [drawn, apart, *lines, here])
 
     def draw(forward: float, left: float, turned: float, scale: str, step: float) -> Drawing:
-        found, k = descend(forward, left, turned, SCALES[scale]), int(step)
-        r = residuals(found.images[k])
-        drawn.set_data(np.ma.masked_invalid(found.images[k]))
-        apart.set_data(np.ma.masked_invalid(r))
-        lines[0].set_ydata(np.maximum(found.position, 1e-3))
-        lines[1].set_ydata(np.maximum(found.rotation / 10, 1e-3))
-        here.set_data([k], [max(found.position[k], 1e-3)])
+        images, residuals, position, rotation = descend(forward, left, turned, SCALES[scale])
+        k = int(step)
+        for image, values in ((drawn, images[k]), (apart, residuals[k])):
+            image.set_data(np.ma.masked_invalid(values))
+        for line, values in zip(lines, (position, rotation / 10), strict=True):
+            line.set_ydata(np.maximum(values, 1e-3))
+        here.set_data([k], [max(position[k], 1e-3)])
         alt = (
             f"The map as seen after {k} steps, how far measured points lie off its surface, and the error over "
             f"{STEPS} steps, from a start {forward:.2f} m forward, {left:.2f} m left, turned by {turned:.0f} degrees."
         )
         summary = (
-            f"step {k}: {found.position[k]:.3f} m and {found.rotation[k]:.1f} degrees off; median |r| "
-            f"{1000 * np.nanmedian(np.abs(r)):.0f} mm;  after {STEPS} steps: {found.position[-1]:.3f} m, "
-            f"{found.rotation[-1]:.1f} degrees"
+            f"step {k}: {position[k]:.3f} m and {rotation[k]:.1f} degrees off; median |r| "
+            f"{1000 * np.nanmedian(np.abs(residuals[k])):.0f} mm;  after {STEPS} steps: {position[-1]:.3f} m, "
+            f"{rotation[-1]:.1f} degrees"
         )
         return Drawing(live.png(), alt, summary)
 
-    controls = [
-        Slider("forward", "start forward by [m]", -0.8, 0.8, 0.2, 0.05),
-        Slider("left", "start left by [m]", -0.8, 0.8, 0.0, 0.05),
-        Slider("turned", "start turned left by [degrees]", -40, 40, 6, 1),
-        Choice("scale", "robust scale [m]", tuple(SCALES), "0.1"),
-        Slider("step", "steps done", 0, STEPS, 0, 1),
-    ]
-    actions = {
-        "Next step": lambda values: {"step": min(values["step"] + 1, STEPS)},
-        "Back": lambda values: {"step": max(values["step"] - 1, 0)},
-    }
-    return Panel("09 Gauss-Newton", controls, draw, actions=actions)
+    return Panel("09 Gauss-Newton", CONTROLS, draw, actions=ACTIONS)
 
 
 PANELS = {"09 Gauss-Newton": refinement_panel}

@@ -1,0 +1,84 @@
+"""Right answers to lesson 09 by other ways than its solutions."""
+
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.spatial.transform import Rotation
+
+from course_lib.geometry import rotation_exp, rotation_log
+
+
+def by_vectors(rotations, w, start=0):
+    mean = Rotation.from_matrix(rotations[start])
+    for _ in range(25):
+        vectors = [(mean.inv() * Rotation.from_matrix(r)).as_rotvec() for r in rotations]
+        mean = mean * Rotation.from_rotvec(sum(a * v for a, v in zip(w, vectors, strict=True)))
+    return mean.as_matrix()
+
+
+def until_still(rotations, w):
+    mean, step = rotations[-1], np.ones(3)
+    while np.linalg.norm(step) > 1e-10:
+        step = w @ rotation_log(mean.T @ rotations)
+        mean = mean @ rotation_exp(step)
+    return mean.tolist()
+
+
+def by_pseudo_inverse(errors, covariances):
+    squares = [e @ np.linalg.pinv(c, rcond=1e-15) @ e for e, c in zip(errors, covariances, strict=True)]
+    inside = sum(e[k] ** 2 <= 9 * c[k, k] for e, c in zip(errors, covariances, strict=True) for k in range(len(e)))
+    return [sum(squares) / errors.size, inside / errors.size]
+
+
+def by_inverse(e, c):
+    sigma = np.sqrt(np.diagonal(c, axis1=1, axis2=2))
+    squared = np.mean(np.einsum("ti,tij,tj->t", e, np.linalg.inv(c), e)) / e.shape[1]
+    return np.array([squared, 1 - np.mean(abs(e) > 3 * sigma)])
+
+
+def in_the_world(rotations, w):
+    """Both in the world's axes: the turns seen from there, and the step on the left."""
+    mean = rotations[0]
+    for _ in range(20):
+        mean = rotation_exp(w @ rotation_log(rotations @ mean.T)) @ mean
+    return mean
+
+
+def walls(points, normals, offsets, scale, steps=40):
+    x, y, a = 0.0, 0.0, 0.0
+    for _ in range(steps):
+        c, s = np.cos(a), np.sin(a)
+        moved = np.column_stack([c * points[:, 0] - s * points[:, 1] + x, s * points[:, 0] + c * points[:, 1] + y])
+        r = np.einsum("ij,ij->i", normals, moved) - offsets
+        lever = normals[:, 1] * (moved[:, 0] - x) - normals[:, 0] * (moved[:, 1] - y)
+        root = 1 / (1 + (r / scale) ** 2)[:, None]
+        step = np.linalg.lstsq(root * np.column_stack([normals, lever]), -root[:, 0] * r, rcond=None)[0]
+        x, y, a = np.add((x, y, a), step)
+    return [x, y, a]
+
+
+def by_scipy(points, normals, offsets, scale):
+    def r(m):
+        c, s = np.cos(m[2]), np.sin(m[2])
+        return (normals * (points @ np.array([[c, s], [-s, c]]) + m[:2])).sum(axis=1) - offsets
+
+    def loss(z):
+        return np.array([z / (1 + z), 1 / (1 + z) ** 2, -2 / (1 + z) ** 3])
+
+    return least_squares(r, np.zeros(3), loss=loss, f_scale=scale, xtol=1e-14, ftol=1e-14, gtol=1e-14).x
+
+
+RIGHT = [
+    ("09.1", lambda n, d, k: np.exp(k / d * np.log(n))),
+    ("09.1", lambda n, d, k: np.array([(n ** (1 / d)) ** k])[0]),
+    ("09.2", by_vectors),
+    ("09.2", until_still),
+    ("09.2", in_the_world),
+    ("09.2", lambda rot, w: by_vectors(rot, w, start=-1)),
+    ("09.2", lambda rot, w: by_vectors(rot, w).round(9)),
+    ("09.2", lambda rot, w: by_vectors(rot, w, start=int(w.argmax())).tolist()),
+    ("09.3", by_pseudo_inverse),
+    ("09.3", by_inverse),
+    ("09.4", walls),
+    ("09.4", lambda p, n, c, s: np.array(walls(p, n, c, s, steps=25), dtype=np.float32)),
+    ("09.4", by_scipy),
+]
