@@ -11,16 +11,9 @@ from matplotlib.patches import Rectangle
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
 from course_lib.lessons.kit.room_photographs import the_image, the_pair
-from course_lib.lessons.lesson_12.colours import CROP, MIN_HEIGHT, crop_of, hues_and_saturations, part_of
-from course_lib.lessons.lesson_12.seam_cuts import (
-    CUTS,
-    brighter,
-    class_legend,
-    cut_sofa,
-    extended_axes,
-    outline,
-    pieces_of_sofa,
-)
+from course_lib.lessons.lesson_12.figures import CROP, brighter, class_legend, crop_of, extended_axes, outline, part_of
+from course_lib.lessons.lesson_12.measures import hues_and_saturations, is_large
+from course_lib.lessons.lesson_12.seam_cuts import cut_sofa, pieces_of_sofa
 from course_lib.plots import figures
 from course_lib.plots.figures import BLACK, BLUE, ORANGE
 from course_lib.plots.panorama_drawing import class_style
@@ -38,7 +31,7 @@ SEAM_CONTROLS = [
 
 def seam_panel() -> Panel:
     """Slide the seam through the sofa, with and without the extension; a score threshold. The network runs first."""
-    cuts = {percent: cut_sofa(percent) for percent in CUTS}
+    cuts = {percent: cut_sofa(percent) for percent in range(0, 101, 10)}
     height, width = cuts[0].image.shape[:2]
     turn = np.array([width, 0.0, width, 0.0])
     figure, axes = figures.new_figure(size=(9.2, 4.1))
@@ -66,11 +59,11 @@ def seam_panel() -> Panel:
         hidden.set_visible(not extension)
         for edge in edges:
             edge.set_visible(extension)
-        exact.set_segments([outline(now.sofa), outline(now.sofa - turn)])
+        exact.set_segments([outline(box) for box in (now.sofa, now.sofa - turn)])
         # What is drawn as an object is not drawn again. On so long a circle nothing wraps.
         new = box_iou(seen.boxes + turn, drawn + turn, 10.0 * width).max(axis=1, initial=0) <= 0.95
         set_boxes(kept, drawn, objects.labels)
-        set_boxes(dropped, seen.boxes[new], np.array(seen.labels)[new])
+        set_boxes(dropped, seen.boxes[new], seen.labels[new])
         pieces, overlap = pieces_of_sofa(now, extension, threshold)
         for k, name in enumerate(names):
             name.set_text(f"sofa {pieces[k].score:.1f}" if k < len(pieces) else "")
@@ -105,7 +98,7 @@ def hue_panel() -> Panel:
     things = {
         f"{thing.number}: {thing.label}{'' if thing.visible_fraction > 0.9 else ', partly hidden'}": thing
         for thing in sorted(the_pair().upper_objects, key=lambda thing: thing.number)
-        if thing.visible_box[3] - thing.visible_box[1] >= MIN_HEIGHT
+        if is_large(thing)
     }
     figure, (close, histogram) = figures.new_figure(1, 2, size=(9.4, 3.4))
     close.get_gridspec().set_width_ratios([1, 1.9])
