@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.kit.room_photographs import the_image
-from course_lib.lessons.lesson_11.panel import SCENE, circle_around, torn_at_the_seam
+from course_lib.lessons.lesson_11.panel import circle_around, torn_at_the_seam
 from course_lib.lessons.lesson_11.sphere_view import SIZE, DrawnSphere
-from course_lib.lessons.lesson_11.write_sphere_scene import scene_html
-from course_lib.paths import REPOSITORY
+from course_lib.lessons.lesson_11.write_sphere_scene import STORED, scene_html
 from course_lib.plots.figures import new_figure
 from course_lib.spherical_stereo.panorama import direction_from_angles, direction_to_pixel, pixel_to_direction
 from tests.notebooks.driven_lab import require_chromium
@@ -31,11 +30,11 @@ def test_a_circle_on_the_panorama_tears_at_the_seam_only():
 
 
 def test_the_scene_computes_as_the_library_and_a_point_dragged_past_an_edge_comes_in_at_the_other():
-    assert (REPOSITORY / "notebooks" / SCENE).read_text() == scene_html(), "run write_sphere_scene"
+    assert STORED.read_text() == scene_html(), "run write_sphere_scene"
     uv = np.random.default_rng(11).uniform([0, 1], [1280, 639], size=(50, 2))
     with pytest.importorskip("playwright.sync_api").sync_playwright() as driver:
         page = driver.chromium.launch(executable_path=require_chromium(), args=["--no-sandbox"]).new_page()
-        page.goto((REPOSITORY / "notebooks" / SCENE).as_uri())
+        page.goto(STORED.as_uri())
         page.wait_for_function("() => document.getElementById('numbers').textContent")
         directions = page.evaluate("pixels => pixels.map(([u, v]) => scene.pixelToDirection(u, v))", uv.tolist())
         assert np.allclose(directions, pixel_to_direction(uv, 1280, 640))

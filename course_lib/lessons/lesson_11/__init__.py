@@ -2,5 +2,5 @@
 
 from course_lib.lessons.kit.room_photographs import the_image, the_pair
 from course_lib.lessons.lesson_11.figures import all_bearings, bearings_figure, idea_figure, seam_figure, views_figure
-from course_lib.lessons.lesson_11.panel import PANELS, scene, sphere_panel
+from course_lib.lessons.lesson_11.panel import PANELS, sphere_panel
 from course_lib.lessons.lesson_11.sphere_view import look_up

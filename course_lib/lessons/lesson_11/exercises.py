@@ -1,7 +1,6 @@
 """Exercises of lesson 11: somebody else's pixels, the way to turn, a stretch across the seam, a knocked tripod."""
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from course_lib.geometry import pose_matrix, wrap_angle
 from course_lib.lessons.kit.cases import case
@@ -93,12 +92,6 @@ def knock(before, after, width, height):
     equations = np.stack(moves, axis=-1).reshape(-1, 3)
     w, *_ = np.linalg.lstsq(equations, (first - then).ravel(), rcond=None)
     return tuple(np.degrees(w))
-
-
-def knock_by_scipy(before, after, width, height):
-    """Another right way: the best rotation at once, from the singular values of the sum of outer products (Kabsch)."""
-    first, then = (pixel_to_direction(uv, width, height) for uv in (before, after))
-    return tuple(Rotation.align_vectors(first, then)[0].as_euler("ZYX", degrees=True)[::-1])
 
 
 def knock_by_angles(before, after, width, height, wrap=wrap_angle):
@@ -247,7 +240,7 @@ EXERCISES = [
         The second number is the length of the stretch. Asked is u_max, where it ends.
     """),
     Exercise("11.4", knock, knocked, "challenge", cases=[no_knock, points_behind, the_first_point_twice],
-             others=[knock_by_scipy, knock_by_angles], tolerance=0.05, mistakes="""
+             others=[knock_by_angles], tolerance=0.05, mistakes="""
         (before, after) => (before[:1], after[:1])
         (before, after) => (before[:2], after[:2])
         You use the first points only. Which turn do they leave open? Stack them all.

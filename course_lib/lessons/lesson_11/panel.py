@@ -1,11 +1,10 @@
-"""Lesson 11's panel and its scene: a point on the panorama and on the sphere."""
+"""Lesson 11's panel: a point on the panorama and on the sphere."""
 
 import numpy as np
 
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Drawing, Panel, Slider
 from course_lib.lessons.kit.room_photographs import the_image
-from course_lib.lessons.kit.scene import Scene
 from course_lib.lessons.lesson_11.sphere_view import LOOK, DrawnSphere
 from course_lib.plots import figures
 from course_lib.plots.figures import BLACK, BLUE, VERMILION, YELLOW
@@ -17,7 +16,6 @@ from course_lib.spherical_stereo.panorama import (
     pixel_to_direction,
 )
 
-SCENE = "scenes/11_sphere.html"  # `write_sphere_scene` writes it
 CONTROLS = [
     Slider("u", "column u [pixels]", 0, 1600, 1200, 10),
     Slider("v", "row v [pixels]", 0, 640, 410, 10),
@@ -25,10 +23,6 @@ CONTROLS = [
 ]
 _DOT = {"marker": "o", "markersize": 8, "mfc": YELLOW, "mec": BLACK, "linestyle": "none"}
 _RING = {"color": BLACK, "linewidth": 2.0}
-
-
-def scene() -> Scene:
-    return Scene(SCENE, "A point on a panorama and on the unit sphere: drag it on either", 470)
 
 
 def sphere_panel() -> Panel:

@@ -11,8 +11,9 @@ from pathlib import Path
 
 from course_lib.files import atomic_write
 from course_lib.lessons.kit.room_photographs import the_pair
-from course_lib.lessons.lesson_11.panel import SCENE
 from course_lib.paths import REPOSITORY
+
+STORED = REPOSITORY / "notebooks/scenes/11_sphere.html"
 
 
 def scene_html() -> str:
@@ -22,4 +23,4 @@ def scene_html() -> str:
 
 
 if __name__ == "__main__":
-    atomic_write(REPOSITORY / "notebooks" / SCENE, scene_html())
+    atomic_write(STORED, scene_html())

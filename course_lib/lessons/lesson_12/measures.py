@@ -1,8 +1,8 @@
 """What the network was taught, how often it is right, and how far the colours in boxes are from the map's."""
 
 import json
+from collections import namedtuple
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -18,14 +18,8 @@ from course_lib.spherical_stereo.panorama import read_panorama
 from course_lib.spherical_stereo.recording import TrueObject, true_object
 
 SCORED_PAIRS = (0, 3, 9, 15)  # of experiment 1, spread over the room (chosen)
-
-
-class TrainingPicture(NamedTuple):
-    """A photograph `(H, W, 3)` uint8 BGR of a generated room, and what can be seen on it: exact boxes `(n, 4)`."""
-
-    image: np.ndarray
-    labels: list[str]
-    boxes: np.ndarray
+TrainingPicture = namedtuple("TrainingPicture", "image labels boxes")  # (H, W, 3) uint8 BGR, n texts, (n, 4)
+ThresholdScore = namedtuple("ThresholdScore", "right made wanted")  # boxes right, boxes made, objects there are
 
 
 def training_picture() -> TrainingPicture:
@@ -45,14 +39,6 @@ def anchors() -> tuple[np.ndarray, np.ndarray]:
     for head, stride in zip(heads, (32, 16, 8), strict=True):
         strides[head.integers("mask")] = stride
     return shapes, strides
-
-
-class ThresholdScore(NamedTuple):
-    """What a score threshold gives: boxes that are right, boxes made, objects that there are."""
-
-    right: int
-    made: int
-    wanted: int
 
 
 def precision_and_recall(thresholds: Sequence[float]) -> dict[float, ThresholdScore]:

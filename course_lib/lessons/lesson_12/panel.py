@@ -6,7 +6,6 @@ import cv2
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.collections import LineCollection
-from matplotlib.patches import Rectangle
 
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
@@ -32,7 +31,7 @@ SEAM_CONTROLS = [
 def seam_panel() -> Panel:
     """Slide the seam through the sofa, with and without the extension; a score threshold. The network runs first."""
     cuts = {percent: cut_sofa(percent) for percent in range(0, 101, 10)}
-    height, width = cuts[0].image.shape[:2]
+    width = cuts[0].image.shape[1]
     turn = np.array([width, 0.0, width, 0.0])
     figure, axes = figures.new_figure(size=(9.2, 4.1))
     title = "Dotted: the sofa's exact box. Thick: objects in the end. Thin: seen, but not counted"
@@ -40,7 +39,6 @@ def seam_panel() -> Panel:
     halved = {
         p: cv2.resize(extend_seam(brighter(cut.image)), None, fx=0.5, fy=0.5)[..., ::-1] for p, cut in cuts.items()
     }
-    hidden = axes.add_patch(Rectangle((width, 0), width, height, color="0.9", linewidth=0))
     exact, dropped, kept = (
         axes.add_collection(LineCollection([], colors=BLACK, linewidths=wide, linestyles=dashes))
         for wide, dashes in ((1.4, ":"), (1.2, (0, (3, 2))), (2.4, "-"))
@@ -48,7 +46,7 @@ def seam_panel() -> Panel:
     ground = {"facecolor": BLACK, "pad": 1.0}
     names = [axes.text(0, 0, "", fontsize=8, color="white", va="bottom", bbox=ground) for _ in range(4)]
     class_legend(figure)
-    live = LiveFigure(figure, [shown, pale, hidden, seam, *edges, exact, dropped, kept, *names])
+    live = LiveFigure(figure, [shown, pale, seam, *edges, exact, dropped, kept, *names])
 
     def draw(cut: float, extension: bool, threshold: float) -> Drawing:
         now = cuts[round(cut)]
@@ -56,7 +54,7 @@ def seam_panel() -> Panel:
         seen = (now.extended if extension else now.plain).above(threshold)
         drawn = where_they_count(objects.boxes, width) if extension else objects.boxes
         shown.set_data(halved[round(cut)])
-        hidden.set_visible(not extension)
+        pale.set(color="white" if extension else "0.9", alpha=0.35 if extension else 1)
         for edge in edges:
             edge.set_visible(extension)
         exact.set_segments([outline(box) for box in (now.sofa, now.sofa - turn)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections import namedtuple
 from typing import NamedTuple
 
 import numpy as np
@@ -53,9 +54,8 @@ class Cut(NamedTuple):
         """Return what comes out in the end: one box for each object, 0 <= u_min < W."""
         if not extension:
             return self.plain.above(threshold)
-        return Found(
-            *select_on_circle(*self.extended.above(threshold), len(self.image[0]), keen_detector().iou_threshold)
-        )
+        seen = self.extended.above(threshold)
+        return Found(*select_on_circle(*seen, self.image.shape[1], keen_detector().iou_threshold))
 
 
 @functools.cache
@@ -71,13 +71,7 @@ def cut_sofa(percent: int) -> Cut:
     return Cut(rolled, wrapped_box(sofa, width), *found)
 
 
-class OnSofa(NamedTuple):
-    """What the network says of a place on the sofa, whatever it takes it for; overlap: IoU with its exact box."""
-
-    box: np.ndarray
-    score: float
-    label: str
-    overlap: float
+OnSofa = namedtuple("OnSofa", "box score label overlap")  # a box on the sofa, its IoU with the sofa's exact box
 
 
 def said_of_the_sofa(cut: Cut, extension: bool, threshold: float) -> list[OnSofa]:
