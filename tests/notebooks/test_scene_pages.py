@@ -12,7 +12,7 @@ from tests.notebooks.driven_lab import require_chromium
 playwright = pytest.importorskip("playwright.sync_api")
 
 PAGES = sorted((REPOSITORY / "notebooks" / "scenes").glob("*.html"))
-MADE_BY_HAND = ("11_sphere",)  # not with PyVista: its own test drags the point (tests/lessons/lesson_11)
+MADE_BY_HAND = ("11_sphere",)  # not with PyVista: its own test drags the point (tests/lessons/test_lesson_11.py)
 SIZE = {"width": 800, "height": 500}
 # WebGL without a graphics card.
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]

@@ -3,16 +3,17 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from course_lib.lessons.lesson_11.sphere_view import SphereView, draw_lines, sphere_axes
-from course_lib.lessons.lesson_11.views import Bearings
+from course_lib.geometry import wrap_angle
+from course_lib.lessons.kit.display import described
+from course_lib.lessons.kit.room_photographs import room_recording
+from course_lib.lessons.lesson_11.sphere_view import DrawnSphere
 from course_lib.plots import figures
 from course_lib.plots.figures import BLUE, VERMILION
 from course_lib.plots.panorama_drawing import draw_box, panorama
+from course_lib.spherical_stereo import SemanticMap
 from course_lib.spherical_stereo.detection.detected_object import box_centre
-from course_lib.spherical_stereo.panorama import pixel_to_direction
+from course_lib.spherical_stereo.panorama import azimuth_elevation, pixel_to_direction
 from course_lib.spherical_stereo.recording import TrueObject
-
-LOOK = (150.0, -20.0)  # degrees: azimuth and elevation in which one looks at the sphere
 
 
 def idea_figure(image_bgr: np.ndarray, points: dict[str, np.ndarray]) -> Figure:
@@ -21,19 +22,16 @@ def idea_figure(image_bgr: np.ndarray, points: dict[str, np.ndarray]) -> Figure:
     figure, (flat, ball) = figures.new_figure(1, 2, size=(9.6, 3.5))
     flat.get_gridspec().set_width_ratios([2, 1])
     panorama(flat, image_bgr, "Equirectangular image")
-    view = SphereView(*LOOK)
-    sphere_axes(ball, "Unit sphere, looked into")
-    ball.imshow(view.picture(image_bgr), extent=(-1, 1, -1, 1))
-    draw_lines(ball, view)
+    sphere = DrawnSphere(ball, image_bgr)
     for index, (name, uv) in enumerate(points.items()):
         style = figures.line_style(index) | {"linestyle": "none", "markersize": 8, "markeredgecolor": "white"}
-        direction = pixel_to_direction(uv, width, height)
-        spot = view.on_screen(direction)
+        x, y = sphere.on_screen(pixel_to_direction(uv, width, height))
         flat.plot(*uv, **style, label=name, clip_on=False)
-        ball.plot(*spot, **style)
-        ball.plot([0, spot[0]], [0, spot[1]], color=style["color"], linewidth=1.2)
+        ball.plot(x, y, **style)
+        ball.plot([0, x], [0, y], color=style["color"], linewidth=1.2)
     figure.legend(*flat.get_legend_handles_labels(), loc="outside lower center", ncols=len(points), frameon=False)
-    return figure
+    alt = "Left, an equirectangular image of a room; right, the same picture inside a sphere. Four points lie on both."
+    return described(figure, alt)
 
 
 def views_figure(views: dict[str, np.ndarray]) -> Figure:
@@ -43,7 +41,8 @@ def views_figure(views: dict[str, np.ndarray]) -> Figure:
         a.imshow(image[..., ::-1])
         a.grid(False)
         a.set(title=name, xlabel="column [pixels]", ylabel="row [pixels]")
-    return figure
+    alt = "Three flat views out of one panorama: ahead, left, behind. Behind, the sofa that the seam cuts is whole."
+    return described(figure, alt)
 
 
 def seam_figure(image_bgr: np.ndarray, thing: TrueObject, naive_u: float) -> Figure:
@@ -57,17 +56,31 @@ def seam_figure(image_bgr: np.ndarray, thing: TrueObject, naive_u: float) -> Fig
     axes.plot(naive_u, v, marker="X", color=VERMILION, label="mean of the columns: wrong", **style)
     axes.plot(u % width, v, marker="o", color=BLUE, label="centre on the circle", clip_on=False, **style)
     axes.legend(loc="upper center", framealpha=0.95)
-    return figure
+    alt = "Panorama with the sofa's box in two pieces at the edges; the mean of its columns lies in mid image."
+    return described(figure, alt)
 
 
-def bearings_figure(found: Bearings) -> Figure:
-    """Measured azimuth over the map's, all objects of all pairs."""
+def all_bearings(semantic_map: SemanticMap) -> tuple[np.ndarray, np.ndarray]:
+    """Return the azimuths [rad], seen from the rig, of every object that is wholly visible: by box, and by the map."""
+    record, measured, from_map = room_recording(1), [], []
+    for pair in record.pairs:
+        for thing in pair.upper_objects:
+            if thing.visible_fraction > 0.95:
+                direction = pixel_to_direction(box_centre(thing.visible_box), record.width, record.height)
+                x, y = semantic_map.positions[thing.number] - pair.pose[:2]
+                measured.append(azimuth_elevation(direction)[0])
+                from_map.append(wrap_angle(np.arctan2(y, x) - pair.pose[2]))
+    return np.array(measured), np.array(from_map)
+
+
+def bearings_figure(measured: np.ndarray, from_map: np.ndarray) -> Figure:
+    """Measured azimuth over the map's, all objects of all pairs, from radians `(n,)`."""
     figure, axes = figures.new_figure(size=(5.4, 3.6))
     axes.plot([-180, 180], [-180, 180], color="0.6", linewidth=1.0, label="equal")
     style = figures.line_style(0) | {"linestyle": "none", "markersize": 4}
-    axes.plot(found.from_map, found.measured, **style, label="one object")
-    ticks = np.arange(-180, 181, 90)
-    axes.set(title="Where objects are", xlabel="azimuth by map and true pose [degrees]", xticks=ticks, yticks=ticks)
-    axes.set_ylabel("azimuth of the box centre [degrees]")
+    axes.plot(np.degrees(from_map), np.degrees(measured), **style, label="one object")
+    axes.set(title="Where objects are", xlabel="azimuth by map and true pose [degrees]")
+    axes.set(ylabel="azimuth of the box centre [degrees]", xticks=range(-180, 181, 90), yticks=range(-180, 181, 90))
     axes.legend(loc="upper left", frameon=False)
-    return figure
+    alt = "Azimuth of the box centres over the azimuth by map and true pose: all points lie close to the diagonal."
+    return described(figure, alt)

@@ -1,84 +1,86 @@
 """Lesson 11's panel: a point on the panorama and on the sphere."""
 
-import functools
-
 import numpy as np
 
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Drawing, Panel, Slider
 from course_lib.lessons.kit.room_photographs import the_image
-from course_lib.lessons.lesson_11.figures import LOOK
-from course_lib.lessons.lesson_11.sphere_view import (
-    SphereView,
-    circle_around,
-    circle_on_panorama,
-    draw_lines,
-    move_lines,
-    point_artists,
-    sphere_axes,
-)
+from course_lib.lessons.lesson_11.sphere_view import LOOK, DrawnSphere
 from course_lib.plots import figures
-from course_lib.plots.figures import BLUE, VERMILION
+from course_lib.plots.figures import BLACK, BLUE, VERMILION, YELLOW
 from course_lib.spherical_stereo.detection.seam import extend_seam
-from course_lib.spherical_stereo.panorama import azimuth_elevation, direction_to_pixel, pixel_to_direction
+from course_lib.spherical_stereo.panorama import (
+    azimuth_elevation,
+    direction_from_angles,
+    direction_to_pixel,
+    pixel_to_direction,
+)
+
+CONTROLS = [
+    Slider("u", "column u [pixels]", 0, 1600, 1200, 10),
+    Slider("v", "row v [pixels]", 0, 640, 410, 10),
+    Slider("look", "look towards [degrees]", -180, 180, LOOK, 15),
+]
+_DOT = {"marker": "o", "markersize": 8, "mfc": YELLOW, "mec": BLACK, "linestyle": "none"}
+_RING = {"color": BLACK, "linewidth": 2.0}
 
 
 def sphere_panel() -> Panel:
     """A point on the panorama with its left quarter repeated, and on the sphere; the view on the sphere can turn."""
     image = the_image()
     height, width = image.shape[:2]
+    end = 1.25 * width
     figure, (flat, ball) = figures.new_figure(1, 2, size=(10.2, 3.3))
     flat.get_gridspec().set_width_ratios([2.3, 1])
-    flat.imshow(extend_seam(image)[..., ::-1], extent=(0, 1.25 * width, height, 0))
+    flat.imshow(extend_seam(image)[..., ::-1], extent=(0, end, height, 0))
     flat.grid(False)
-    flat.axvspan(width, 1.25 * width, color="white", alpha=0.45, linewidth=0)
-    flat.axvline(width, color=VERMILION, linewidth=2.2)
-    flat.axvline(0, color=VERMILION, linewidth=2.2)
+    flat.axvspan(width, end, color="white", alpha=0.45, linewidth=0)
+    for seam in (0, width):
+        flat.axvline(seam, color=VERMILION, linewidth=2.2)
     flat.axhline(height / 2, color=BLUE, linestyle="--", linewidth=1.4)
     flat.set(title="Panorama, its left quarter once more", xlabel="column u [pixels]", ylabel="row v [pixels]")
-    flat.set(xlim=(0, 1.25 * width), ylim=(height, 0), xticks=np.arange(0, 1.26 * width, width / 4))
-    sphere_axes(ball, "Unit sphere, looked into")
-    view = SphereView(*LOOK)
-    shown = ball.imshow(view.picture(image), extent=(-1, 1, -1, 1))
-    lines, parts = draw_lines(ball, view), point_artists(flat, ball)
-    live = LiveFigure(figure, [shown, *lines, *parts.values()])
-
-    @functools.lru_cache(maxsize=32)
-    def sphere_picture(look: float) -> np.ndarray:
-        return SphereView(look, LOOK[1]).picture(image)
+    flat.set(xlim=(0, end), ylim=(height, 0), xticks=np.linspace(0, end, 6))
+    sphere = DrawnSphere(ball, image)
+    (flat_ring,), (flat_dot,) = flat.plot([], [], **_RING), flat.plot([], [], **_DOT)
+    (ray,) = ball.plot([], [], color=BLACK, linewidth=2.4)
+    (ring,), (dot,) = ball.plot([], [], **_RING), ball.plot([], [], **_DOT)
+    live = LiveFigure(figure, [*sphere.artists, flat_ring, flat_dot, ray, ring, dot])
 
     def draw(u: float, v: float, look: float) -> Drawing:
-        view = SphereView(look, LOOK[1])
-        shown.set_data(sphere_picture(look))
-        move_lines(lines, view)
+        sphere.turn(look)
         direction = pixel_to_direction([u, v], width, height)
-        ring = circle_around(direction)
-        on_panorama = circle_on_panorama(ring, width, height)
-        again = on_panorama + np.array([width, 0.0])
-        parts["flat ring"].set_data(*np.concatenate([on_panorama, np.full((1, 2), np.nan), again]).T)
-        columns = [c for c in (u % width, u % width + width) if c <= 1.25 * width]
-        parts["flat"].set_data(columns, [v] * len(columns))
-        spot, edge = view.on_screen(direction), view.on_screen(ring)
-        parts["ray"].set_data([0, spot[0]], [0, spot[1]])
-        parts["ring"].set_data(*edge.T)
-        parts["point"].set_data([spot[0]], [spot[1]])
+        circle = circle_around(direction)
+        on_panorama = torn_at_the_seam(direction_to_pixel(circle, width, height), width)
+        flat_ring.set_data(*np.concatenate([on_panorama, [[np.nan] * 2], on_panorama + np.array([width, 0])]).T)
+        columns = [column for column in (u % width, u % width + width) if column <= end]
+        flat_dot.set_data(columns, [v] * len(columns))
+        x, y = sphere.on_screen(direction)
+        ray.set_data([0, x], [0, y])
+        dot.set_data([x], [y])
+        ring.set_data(*sphere.on_screen(circle).T)
         azimuth, elevation = np.degrees(azimuth_elevation(direction))
-        x, y, z = direction
         back = direction_to_pixel(direction, width, height)
-        half = "near half (taken away)" if view.is_near(direction) else "far half"
-        lines_of_text = [
-            f"u {u:.0f} px, v {v:.0f} px: azimuth {azimuth:.1f} deg, elevation {elevation:.1f} deg; {half}",
-            f"unit vector x {x:.3f}, y {y:.3f}, z {z:.3f}; back again: u {back[0]:.0f} px, v {back[1]:.0f} px",
-        ]
-        alt = f"A point and a circle of 10 degrees on a panorama and on the unit sphere. {lines_of_text[0]}."
-        return Drawing(live.png(), alt, "\n".join(lines_of_text))
+        half = "near half (taken away)" if sphere.is_near(direction) else "far half"
+        place = f"u {u:.0f} px, v {v:.0f} px: azimuth {azimuth:.1f} deg, elevation {elevation:.1f} deg; {half}"
+        x, y, z = direction
+        numbers = f"unit vector x {x:.3f}, y {y:.3f}, z {z:.3f}; back again: u {back[0]:.0f} px, v {back[1]:.0f} px"
+        alt = f"A point and a circle of 10 degrees on a panorama and on the unit sphere. {place}."
+        return Drawing(live.png(), alt, f"{place}\n{numbers}")
 
-    controls = [
-        Slider("u", "column u [pixels]", 0, 1600, 1200, 10),
-        Slider("v", "row v [pixels]", 0, 640, 410, 10),
-        Slider("look", "look towards [degrees]", -180, 180, 150, 15),
-    ]
-    return Panel("11 panorama and sphere", controls, draw, photograph=True)
+    return Panel("11 panorama and sphere", CONTROLS, draw, photograph=True)
+
+
+def circle_around(direction: np.ndarray) -> np.ndarray:
+    """Return directions `(73, 3)` of a circle of 10 degrees around a direction: round on the sphere."""
+    left = direction_from_angles(azimuth_elevation(direction)[0] + np.pi / 2, 0.0)
+    t, radius = np.linspace(0, 2 * np.pi, 73)[:, None], np.radians(10)
+    return np.cos(radius) * direction + np.sin(radius) * (np.cos(t) * left + np.sin(t) * np.cross(direction, left))
+
+
+def torn_at_the_seam(uv: np.ndarray, width: int) -> np.ndarray:
+    """Return a line on the panorama `(n, 2)` with NaN where it jumps across the seam."""
+    jumps = np.abs(np.diff(uv[:, 0], prepend=uv[0, 0])) > width / 2
+    return np.where(jumps[:, None], np.nan, uv)
 
 
 PANELS = {"11 panorama and sphere": sphere_panel}

@@ -1,218 +1,101 @@
 """Exercises of lesson 12: the range in which a box counts, overlap on the circle, suppression, a threshold."""
 
-from collections.abc import Callable
-
 import numpy as np
 
-from course_lib.lessons.kit.exercises import Exercise, Mistake
+from course_lib.lessons.kit.cases import case
+from course_lib.lessons.kit.exercises import Exercise
+from course_lib.lessons.kit.mistakes import edited
+
+WIDTHS = (640, 1280, 1920)
 
 # 12.1: which boxes count
 
 
-def counts(boxes: np.ndarray, width: int, start: float) -> np.ndarray:
-    """Which boxes (n, 4) of the extended image have their centre in [start, start + width)."""
-    return _in_range(_centre(boxes), start, start + width)
+def counts_once(boxes, width, start):
+    """Which boxes (n, 4) of the extended image count; width is that of the panorama itself."""
+    # The centre, in a range one turn wide. With both ends in, an object there would count twice.
+    centre = (boxes[:, 0] + boxes[:, 2]) / 2
+    return (centre >= start) & (centre < start + width)
 
 
-def _in_range(values: np.ndarray, start: float, stop: float) -> np.ndarray:
-    return (values >= start) & (values < stop)
-
-
-def _centre(boxes: np.ndarray) -> np.ndarray:
-    return (boxes[:, 0] + boxes[:, 2]) / 2
-
-
-def _boxes(rng: np.random.Generator) -> tuple:
-    """Boxes of the extended image, and always one with its centre on each end of the range."""
-    width, start = int(rng.choice([640, 1280, 1920])), rng.choice([0.0625, 0.125, 0.1875])
-    n = int(rng.integers(12, 20))
-    centres = rng.uniform(0.03, 1.22, size=n)
-    centres[:8] = start + rng.uniform(-0.06, 0.06, size=8) + rng.choice([0, 1], size=8)  # close to an end
+def boxes_near_the_ends(rng: np.random.Generator) -> tuple:
+    """Boxes of the extended image, most of them near an end of the range, and always one with its centre on each."""
+    width, start, n = int(rng.choice(WIDTHS)), rng.choice([0.0625, 0.125, 0.1875]), int(rng.integers(12, 20))
+    centres = rng.uniform(0.03, 1.22, n)
+    centres[:8] = start + rng.uniform(-0.06, 0.06, 8) + rng.choice([0, 1], 8)
     centres[:2] = start, start + 1
-    half = np.minimum(rng.uniform(0.01, 0.12, size=n), np.minimum(centres, 1.25 - centres))
-    half = np.round(half * 64) / 64  # so that the two centres are exact
-    rows = np.sort(rng.uniform(0, 0.5, size=(n, 2)), axis=1)
+    half = np.round(np.minimum(rng.uniform(0.01, 0.12, n), np.minimum(centres, 1.25 - centres)) * 64) / 64  # exact
+    rows = np.sort(rng.uniform(0, 0.5, (n, 2)), axis=1)
     boxes = np.column_stack([centres - half, rows[:, 0], centres + half, rows[:, 1]]) * width
-    return boxes[rng.permutation(n)], width, float(start * width)
+    return rng.permutation(boxes), width, float(start * width)
 
 
 # 12.2: overlap of two boxes across the seam
 
 
-def overlap(a: np.ndarray, b: np.ndarray, width: int) -> float:
-    """IoU of two boxes (u_min, v_min, u_max, v_max) on the circle of columns; u_max may pass the width."""
-    return _iou(_shared_on_circle(a, b, width), a, b)
+def overlap(a, b, width):
+    """IoU of two boxes [u_min, v_min, u_max, v_max] on the circle of columns."""
+    # b in three places, one shared area, the area of the union below.
+    across = sum(max(0, min(a[2], b[2] + turn) - max(a[0], b[0] + turn)) for turn in (-width, 0, width))
+    down = max(0, min(a[3], b[3]) - max(a[1], b[1]))
+    shared = across * down
+    areas = [(box[2] - box[0]) * (box[3] - box[1]) for box in (a, b)]
+    return shared / (sum(areas) - shared)
 
 
-def _area(box: np.ndarray) -> float:
-    return (box[2] - box[0]) * (box[3] - box[1])
-
-
-def _across(a: np.ndarray, b: np.ndarray) -> float:
-    return max(0.0, min(a[2], b[2]) - max(a[0], b[0]))
-
-
-def _down(a: np.ndarray, b: np.ndarray) -> float:
-    return max(0.0, min(a[3], b[3]) - max(a[1], b[1]))
-
-
-def _shared_on_circle(a: np.ndarray, b: np.ndarray, width: int) -> float:
-    across = sum(_across(a, b + np.array([turn, 0, turn, 0])) for turn in (-width, 0, width))
-    return across * _down(a, b)
-
-
-def _iou(shared: float, a: np.ndarray, b: np.ndarray) -> float:
-    return float(shared / (_area(a) + _area(b) - shared))
-
-
-def _two_boxes(rng: np.random.Generator) -> tuple:
+def two_boxes(rng: np.random.Generator) -> tuple:
     """Two boxes up to a quarter wide: overlapping, apart, one with its columns one turn on, one across the seam."""
-    width = int(rng.choice([640, 1280, 1920]))
-    case = rng.integers(5)
-    a = np.array([rng.uniform(0.3, 0.6), 0.4, 0.0, 0.55])
+    width, kind = int(rng.choice(WIDTHS)), rng.integers(5)
+    a = np.array([rng.uniform(0.3, 0.6) if kind == 0 else 0.9, 0.4, 0.0, 0.55])
     a[2] = a[0] + rng.uniform(0.1, 0.2)
-    if case != 0:
-        a[[0, 2]] += 0.9 - a[0]  # across the seam
-    shift = np.array([rng.uniform(-0.05, 0.05), rng.uniform(-0.05, 0.05)] * 2)
-    b = a + shift + np.array([0, 0, rng.uniform(-0.04, 0.05), 0])
-    if case in (2, 3):
-        b[[0, 2]] += 1.05 - b[0]  # its left edge lies beyond the seam: on the image that is at the left
-        b[[0, 2]] -= 1.0
-    if case == 1:
-        b[[1, 3]] += 0.3  # below the other one
-        if rng.random() < 0.5:
-            b[[0, 2]] -= 0.35  # and beside it: two negative lengths, whose product is positive
-    if case == 4:
-        a[2], b[2] = rng.uniform(0.95, 0.99), rng.uniform(1.01, 1.08)  # only one of them passes the seam
-    if rng.random() < 0.5:
-        a, b = b, a
-    return a * width, b * width, width  # both were shares of the width
+    b = a + [*rng.uniform(-0.05, 0.05, 2)] * 2 + [0, 0, rng.uniform(-0.04, 0.05), 0]
+    if kind == 1:  # below the other one, and often beside it: two negative lengths, whose product is positive
+        b += [0, 0.3, 0, 0.3] - rng.choice([0, 0.35]) * np.array([1, 0, 1, 0])
+    if kind in (2, 3):  # its left edge lies beyond the seam, so it is at the left of the image
+        b[[0, 2]] += 0.05 - b[0]
+    if kind == 4:  # only one of them passes the seam
+        a[2], b[2] = rng.uniform(0.95, 0.99), rng.uniform(1.01, 1.08)
+    a, b = rng.permutation([a, b]) * width  # both were shares of the width
+    return a, b, width
 
 
-def _moved_if_across(a: np.ndarray, b: np.ndarray, width: int) -> float:
-    a, b = (box - np.array([1, 0, 1, 0]) * width * (box[2] > width) for box in (a, b))
-    return _iou(_across(a, b) * _down(a, b), a, b)
+def box(*edges):
+    return np.array(edges, dtype=float)
 
 
-def _uncut(a: np.ndarray, b: np.ndarray, width: int, across: bool) -> float:
-    """Negative lengths are not cut off at 0: across, or else down."""
-    turns = [b[[0, 2]] + turn for turn in (-width, 0, width)]
-    length = max(min(a[2], right) - max(a[0], left) for left, right in turns)
-    if across:
-        return _iou(length * _down(a, b), a, b)
-    return _iou(max(0.0, length) * (min(a[3], b[3]) - max(a[1], b[1])), a, b)
-
-
-def _edges_on_image(box: np.ndarray, width: int) -> np.ndarray:
-    return np.array([box[0] % width, box[1], box[2] % width, box[3]])
-
-
-def _two_places(first: float, second: float) -> Callable:
-    """A mistake: b in two places only, so many widths from its own."""
-
-    def mistaken(a: np.ndarray, b: np.ndarray, width: int) -> float:
-        turns = (np.array([turn * width, 0, turn * width, 0]) for turn in (first, second))
-        return _iou(sum(_across(a, b + turn) for turn in turns) * _down(a, b), a, b)
-
-    return mistaken
-
-
-def _product_uncut(a: np.ndarray, b: np.ndarray, width: int) -> float:
-    """The greatest product of both lengths over all turns: two negative ones make a positive one."""
+def multiplied_first(a, b, width):
+    """A mistake: the two lengths are multiplied before they are cut off at 0."""
     down = min(a[3], b[3]) - max(a[1], b[1])
-    across = [min(a[2], b[2] + turn) - max(a[0], b[0] + turn) for turn in (-width, 0, width)]
-    return _iou(max(0.0, *(length * down for length in across)), a, b)
-
-
-def _product_cut(a: np.ndarray, b: np.ndarray, width: int) -> float:
-    """The product of two lengths that may both be negative, cut off at 0; the best of three turns."""
-    best = 0.0
-    for turn in (-width, 0, width):
-        moved = b + np.array([turn, 0, turn, 0])
-        shared = (min(a[2], moved[2]) - max(a[0], moved[0])) * (min(a[3], b[3]) - max(a[1], b[1]))
-        best = max(best, _iou(shared, a, b))
-    return best
-
-
-def _lengths_added_uncut(a: np.ndarray, b: np.ndarray, width: int) -> float:
-    """All three lengths are added, the negative ones too."""
-    across = sum(min(a[2], b[2] + turn) - max(a[0], b[0] + turn) for turn in (-width, 0, width))
-    return _iou(across * _down(a, b), a, b)
+    shared = max((min(a[2], b[2] + turn) - max(a[0], b[0] + turn)) * down for turn in (-width, 0, width))
+    areas = [(box[2] - box[0]) * (box[3] - box[1]) for box in (a, b)]
+    return max(shared, 0) / (sum(areas) - max(shared, 0))
 
 
 # 12.3: threshold and suppression
 
 
-def surest(boxes: np.ndarray, scores: np.ndarray, threshold: float, limit: float) -> np.ndarray:
-    """Rows (k,) that stay, the greatest score first: scores (n, c) of each class, boxes (n, 4), IoU at most `limit`."""
-    return _suppressed(boxes, scores, threshold, limit)
-
-
-def _suppressed(
-    boxes: np.ndarray,
-    scores: np.ndarray,
-    threshold: float,
-    limit: float,
-    enough: Callable = np.greater_equal,
-    rival: Callable = np.greater,
-    overlap_of: Callable = lambda a, b: _iou(_across(a, b) * _down(a, b), a, b),
-    by_class: bool = True,
-    kept_only: bool = True,
-    sort: bool = True,
-) -> np.ndarray:
-    """`surest` with the slips that a mistake makes."""
-    best, classes = scores.max(axis=1), scores.argmax(axis=1)
-    rows = np.flatnonzero(enough(best, threshold))
-    rows = rows[np.argsort(-best[rows])] if sort else rows
-    kept: list[int] = []
-    for place, i in enumerate(rows):
-        rivals = [k for k in (kept if kept_only else rows[:place]) if not by_class or classes[k] == classes[i]]
-        if not any(rival(overlap_of(boxes[i], boxes[k]), limit) for k in rivals):
-            kept.append(int(i))
+def surest(boxes, scores, threshold, limit):
+    """Rows (k,) of the boxes that stay after threshold and suppression, the surest first."""
+    # The surest first; only boxes that stayed put others out, and only of their class.
+    best, classes, kept = scores.max(axis=1), scores.argmax(axis=1), []
+    areas = (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
+    for i in np.argsort(-best):
+        sides = np.minimum(boxes[i, 2:], boxes[kept, 2:]) - np.maximum(boxes[i, :2], boxes[kept, :2])
+        shared = np.clip(sides, 0, None).prod(axis=1)
+        in_the_way = (shared > limit * (areas[i] + areas[kept] - shared)) & (classes[kept] == classes[i])
+        if best[i] >= threshold and not in_the_way.any():
+            kept.append(i)
     return np.array(kept, dtype=int)
 
 
-def _slip(**changed) -> Callable:
-    return lambda boxes, scores, threshold, limit: _suppressed(boxes, scores, threshold, limit, **changed)
-
-
-def _shared_of_the_smaller(a: np.ndarray, b: np.ndarray) -> float:
-    return _across(a, b) * _down(a, b) / min(_area(a), _area(b))
-
-
-def _one_of_each_class(boxes: np.ndarray, scores: np.ndarray, threshold: float, limit: float) -> np.ndarray:
-    best, classes = scores.max(axis=1), scores.argmax(axis=1)
-    rows = [i for i in np.argsort(-best) if best[i] >= threshold]
-    return np.array([i for k, i in enumerate(rows) if classes[i] not in classes[rows[:k]]], dtype=int)
-
-
-def _class_after_class(boxes: np.ndarray, scores: np.ndarray, threshold: float, limit: float) -> np.ndarray:
-    kept, classes = surest(boxes, scores, threshold, limit), scores.argmax(axis=1)
-    return kept[np.argsort(classes[kept], kind="stable")]
-
-
-def _in_several_classes(boxes: np.ndarray, scores: np.ndarray, threshold: float, limit: float) -> np.ndarray:
-    """A box takes part in every class in which its score reaches the threshold."""
-    kept: set[int] = set()
-    for column in scores.T:
-        kept.update(_suppressed(boxes, column[:, None], threshold, limit).tolist())
-    return np.array(sorted(kept, key=lambda i: -scores[i].max()), dtype=int)
-
-
-def _of_the_short_list(boxes: np.ndarray, scores: np.ndarray, threshold: float, limit: float) -> np.ndarray:
-    """Numbers in the list of those that reach the threshold, not in the list that was given."""
-    reach = scores.max(axis=1) >= threshold
-    return (np.cumsum(reach) - 1)[surest(boxes, scores, threshold, limit)]
-
-
-def _scored(classes: np.ndarray, best: np.ndarray, n_classes: int = 3) -> np.ndarray:
-    """Scores (n, c): `best` for each row's class, and less for the others."""
-    scores = np.outer(best, np.linspace(0.2, 0.4, n_classes))
+def scored(classes, best) -> np.ndarray:
+    """Scores (n, 3): `best` for each row's class, and less for the others."""
+    scores = np.outer(best, [0.2, 0.3, 0.4])
     scores[np.arange(len(best)), classes] = best
     return scores
 
 
-def _answers_of_a_network(rng: np.random.Generator) -> tuple:
+def answers_of_a_network(rng: np.random.Generator) -> tuple:
     """Several boxes on each of a few things, of two classes now and then, in any order; scores all differ."""
     boxes, classes = [], []
     for _ in range(int(rng.integers(3, 6))):
@@ -222,50 +105,61 @@ def _answers_of_a_network(rng: np.random.Generator) -> tuple:
             boxes.append([*moved, *(moved + size * rng.uniform(0.8, 1.25, 2))])
             classes.append(label if rng.random() < 0.8 else (label + 1) % 3)
     best = rng.permutation(np.linspace(0.15, 0.95, len(boxes)))
-    threshold, limit = float(rng.choice([0.2, 0.3, 0.5])), float(rng.choice([0.3, 0.45, 0.6]))
-    return np.array(boxes), _scored(np.array(classes), best), threshold, limit
+    return (
+        np.array(boxes),
+        scored(classes, best),
+        float(rng.choice([0.2, 0.3, 0.5])),
+        float(rng.choice([0.3, 0.45, 0.6])),
+    )
 
 
-_SQUARE = np.array([0.0, 0.0, 10.0, 10.0])
+def squares(name: str, shifts: list, classes: list, best: list, threshold: float, limit: float):
+    """A special case: squares of 10 pixels, so far to the right."""
+    boxes = np.array([0.0, 0, 10, 10]) + np.outer(shifts, [1, 0, 1, 0])
+    return case(name, boxes, scored(classes, best), threshold, limit)
 
 
-def _squares(shifts: list[float], classes: list[int], best: list[float], threshold: float, limit: float) -> tuple:
-    boxes = _SQUARE + np.outer(shifts, [1.0, 0, 1, 0])
-    return boxes, _scored(np.array(classes), np.array(best)), threshold, limit
+def in_several_classes(boxes, scores, threshold, limit):
+    """A mistake: a box takes part in every class in which its score reaches the threshold."""
+    kept = {i for column in scores.T for i in surest(boxes, column[:, None], threshold, limit)}
+    return np.array(sorted(kept, key=lambda i: -scores[i].max()), dtype=int)
 
 
 # 12.4: the lowest threshold whose precision can be believed
 
 
-def lowest_threshold(scores: np.ndarray, right: np.ndarray, least: float) -> float:
-    """Lowest score t at which Wilson's lower end of the share of right boxes, of those with at least t, is >= least."""
-    return _lowest(scores, right, least, _wilson_low)
-
-
-def _wilson_low(hits: int, n: int, z: float = 1.96) -> float:
-    """The least share p that `hits` of `n` do not contradict: hits / n = p + z sqrt(p (1 - p) / n)."""
-    share, spread = hits / n, z * z / n
-    return (share + spread / 2 - np.sqrt(spread * share * (1 - share) + spread**2 / 4)) / (1 + spread)
-
-
-def _lowest(scores: np.ndarray, right: np.ndarray, least: float, low: Callable, enough=np.greater_equal) -> float:
+def lowest_threshold(scores, right, least):
+    """The lowest threshold at which Wilson's lower end of the precision is at least `least`; inf for none."""
+    # Every score is tried, from the lowest up; the first that can be believed is the answer.
+    z = 1.96
     for t in np.unique(scores):
-        kept = enough(scores, t)
-        if kept.any() and low(int(right[kept].sum()), int(kept.sum())) >= least:
-            return float(t)
+        kept = scores >= t
+        n, share = kept.sum(), right[kept].mean()
+        root = z * np.sqrt(share * (1 - share) / n + z**2 / (4 * n**2))
+        if (share + z**2 / (2 * n) - root) / (1 + z**2 / n) >= least:
+            return t
     return np.inf
 
 
-def _refused(arguments: tuple, answer: object) -> str | None:
+with_exact_z = edited(lowest_threshold, "1.96 => 1.959963984540054")
+all_good = edited(
+    lowest_threshold,
+    "z = 1.96 => z, good = 1.96, [] and also return t => good.append(t) and also return np.inf => return good",
+)
+
+
+def refused(arguments, answer) -> str | None:
     """What is wrong with a threshold: what it keeps is compared, and Wilson's z may be 1.96 or more exact."""
     scores, right, least = arguments
     try:
         t = float(np.asarray(answer, dtype=float).reshape(()))
     except (TypeError, ValueError):
         return "Give one number, the threshold."
-    wanted = {int((scores >= _lowest(scores, right, least, low)).sum()) for low in (_wilson_low, _wilson_exact)}
+    if np.isnan(t):
+        return "NaN says nothing. Where no threshold is good enough, the answer is np.inf: it keeps no box."
+    wanted = {int((scores >= lowest(scores, right, least)).sum()) for lowest in (lowest_threshold, with_exact_z)}
     kept = int((scores >= t - 1e-6).sum())
-    if kept in wanted or (np.isnan(t) and wanted == {0}):
+    if kept in wanted:
         return None
     if kept == 0:
         return "Yours keeps no box, but a threshold that can be believed exists. Have you tried them all?"
@@ -276,420 +170,164 @@ def _refused(arguments: tuple, answer: object) -> str | None:
     return "Yours is higher than it must be: a lower one still keeps the lower end at `least`, and finds more."
 
 
-def _wilson_exact(hits: int, n: int) -> float:
-    return _wilson_low(hits, n, 1.959963984540054)
-
-
-def _plain_share(hits: int, n: int) -> float:
-    return hits / n
-
-
-def _wald_low(hits: int, n: int) -> float:
-    return hits / n - 1.96 * np.sqrt(hits / n * (1 - hits / n) / n)
-
-
-def _wilson_high(hits: int, n: int) -> float:
-    return 1 - _wilson_low(n - hits, n)
-
-
-def _validation_boxes(rng: np.random.Generator) -> tuple:
+def validation_boxes(rng: np.random.Generator) -> tuple:
     """Scores with two digits, so that some are equal, and boxes that are right about as often as their score says."""
-    n = int(rng.integers(60, 200))
-    scores = np.round(rng.uniform(0.05, 0.99, n), 2)
-    return scores, rng.random(n) < scores**0.25, float(rng.choice([0.75, 0.8, 0.85]))
+    scores = np.round(rng.uniform(0.05, 0.99, int(rng.integers(60, 200))), 2)
+    return scores, rng.random(len(scores)) < scores**0.25, float(rng.choice([0.75, 0.8, 0.85]))
 
 
-def _until_it_fails(scores: np.ndarray, right: np.ndarray, least: float) -> float:
-    """Down from the top, until the condition, once it held, fails for the first time."""
-    found = np.inf
-    for t in np.unique(scores)[::-1]:
-        kept = scores >= t
-        if _wilson_low(int(right[kept].sum()), int(kept.sum())) >= least:
-            found = float(t)
-        elif np.isfinite(found):
-            break
-    return found
+def until_it_fails(scores, right, least):
+    """A mistake: down from the top, until the condition, once it held, fails for the first time."""
+    levels = np.unique(scores)[::-1]
+    good = np.isin(levels, all_good(scores, right, least))
+    first = good.argmax()
+    return levels[first:][np.append(good[first:], False).argmin() - 1] if good.any() else np.inf
 
 
-def _highest(scores: np.ndarray, right: np.ndarray, least: float) -> float:
-    good = [
-        t for t in np.unique(scores) if _wilson_low(int(right[scores >= t].sum()), int((scores >= t).sum())) >= least
-    ]
-    return float(max(good, default=np.inf))
+FOUR_SCORES = np.array([0.6, 0.9, 0.7, 0.8])
 
-
-def _row_by_row(order_of: Callable) -> Callable:
-    """A mistake: box after box in the order `order_of(scores)`; among equal scores it may stop in the middle."""
-
-    def mistaken(scores: np.ndarray, right: np.ndarray, least: float) -> float:
-        order = order_of(scores)
-        hits, n = np.cumsum(right[order]), np.arange(1, len(scores) + 1)
-        good = np.flatnonzero([_wilson_low(int(h), int(k)) >= least for h, k in zip(hits, n, strict=True)])
-        return float(scores[order[good[-1]]]) if len(good) else np.inf
-
-    return mistaken
-
-
-def _without_the_middle(hits: int, n: int) -> float:
-    """Wilson's formula without z squared / 2n above the fraction line."""
-    return _wilson_low(hits, n) - 1.96**2 / (2 * n) / (1 + 1.96**2 / n)
-
-
-def _share_of_all(scores: np.ndarray, right: np.ndarray, least: float) -> float:
-    """Divides by all boxes, not by those that are kept."""
-    return _lowest(scores, right, least, lambda hits, n: _wilson_low(hits, len(scores)))
-
-
-def _best_f1(scores: np.ndarray, right: np.ndarray, least: float) -> float:
-    def f1(t: float) -> float:
-        kept = scores >= t
-        return 2 * right[kept].sum() / (kept.sum() + right.sum())
-
-    return float(max(np.unique(scores), key=f1))
-
-
+# fmt: off
 EXERCISES = [
-    Exercise(
-        number="12.1",
-        level="warm-up",
-        solution=counts,
-        inputs=_boxes,
-        cases=(
-            lambda rng: (np.array([[90.0, 0, 110, 9], [91, 0, 110, 9], [92, 0, 110, 9]]), 1280, 100.25),  # halves
-            lambda rng: (np.array([[140.0, 0, 160, 9], [150, 0, 170, 9], [1430, 0, 1450, 9]]), 1280, 160.0),
-            lambda rng: (np.zeros((0, 4)), 1280, 160.0),  # nothing was found
-        ),
-        mistakes=(
-            Mistake(
-                lambda boxes, width, start: _in_range(boxes[:, 0] + boxes[:, 2] / 2, start, start + width),
-                "Numbers 2 and 3 of a box are u_max and v_max, not its width and height.",
-            ),
-            Mistake(
-                lambda boxes, width, start: _in_range((boxes[:, 0] + boxes[:, 2]) // 2, start, start + width),
-                "`//` cuts half columns off. A centre may lie between two columns: divide with `/`.",
-            ),
-            Mistake(
-                lambda boxes, width, start: _in_range(boxes[:, 0], start, start + width),
-                "You look at the left edge. The centre of the box decides.",
-            ),
-            Mistake(
-                lambda boxes, width, start: _in_range(boxes[:, 2], start, start + width),
-                "You look at the right edge. The centre of the box decides.",
-            ),
-            Mistake(
-                lambda boxes, width, start: _in_range((boxes[:, 1] + boxes[:, 3]) / 2, start, start + width),
-                "You look at the rows. The centre's column is the mean of u_min and u_max: numbers 0 and 2 of a box.",
-            ),
-            Mistake(
-                lambda boxes, width, start: _in_range((boxes[:, 2] - boxes[:, 0]) / 2, start, start + width),
-                "That is half the width of a box. The centre is the mean of its two edges: add them.",
-            ),
-            Mistake(
-                lambda boxes, width, start: _in_range(_centre(boxes), start, width),
-                "Your range ends at W: less than one turn, so that some objects count nowhere. It ends at start + W.",
-            ),
-            Mistake(
-                lambda boxes, width, start: _in_range(_centre(boxes), start, width - start),
-                "You leave out a piece at both ends. The range is one whole turn: to start + W.",
-            ),
-            Mistake(
-                lambda boxes, width, start: _in_range(_centre(boxes), 0, width),
-                "In your range the left end begins at 0: use `start`.",
-            ),
-            Mistake(
-                lambda boxes, width, start: _in_range(_centre(boxes), width / 8, width / 8 + width),
-                "That is the lesson's range, which begins at W/8. Here it begins at `start`.",
-            ),
-            Mistake(
-                lambda boxes, width, start: (_centre(boxes) >= start) | (_centre(boxes) < start + width),
-                "All of yours count: a centre must obey both conditions, not one of them.",
-            ),
-            Mistake(
-                lambda boxes, width, start: (_centre(boxes) >= start) & (_centre(boxes) <= start + width),
-                "A centre on the right end counts in yours, and so does its copy on the left end: twice in all.",
-            ),
-            Mistake(
-                lambda boxes, width, start: (_centre(boxes) > start) & (_centre(boxes) < start + width),
-                "A centre right on the left end is lost in yours: its copy on the right end does not count either.",
-            ),
-            Mistake(
-                lambda boxes, width, start: (_centre(boxes) > start) & (_centre(boxes) <= start + width),
-                "A good range, too, but the task wants its left end in and its right end out.",
-            ),
-            Mistake(
-                lambda boxes, width, start: (boxes[:, 0] >= start) & (boxes[:, 2] < start + width),
-                "You ask for the whole box inside. Then an object on either end of the range never counts.",
-            ),
-            Mistake(
-                lambda boxes, width, start: ~counts(boxes, width, start),
-                "Yours is True for those that do not count.",
-            ),
-            Mistake(
-                lambda boxes, width, start: counts(boxes, 1280, start),
-                "Your panorama is always 1280 columns wide: use the argument.",
-            ),
-            Mistake(
-                lambda boxes, width, start: _in_range(_centre(boxes), start, start + 1.25 * width),
-                "Your range does not end within the extended image. It is one turn wide: W, without the quarter added.",
-            ),
-        ),
-    ),
-    Exercise(
-        number="12.2",
-        solution=overlap,
-        inputs=_two_boxes,
-        cases=(
-            lambda rng: (np.array([100.0, 300, 200, 400]), np.array([740.0, 300, 840, 400]), 1280),  # half a turn apart
-            lambda rng: (np.array([1200.0, 300, 1300, 400]), np.array([0.0, 300, 20, 400]), 1280),
-            lambda rng: (np.array([0.0, 300, 20, 400]), np.array([1200.0, 300, 1300, 400]), 1280),
-            lambda rng: (np.array([1200.0, 300, 1300, 400]), np.array([1200.0, 300, 1300, 400]), 1280),  # equal
-            lambda rng: (np.array([100.0, 300, 200, 400]), np.array([200.0, 300, 300, 400]), 1280),  # side by side
-            lambda rng: (np.array([100.0, 300, 200, 400]), np.array([900.0, 450, 950, 500]), 1280),  # far apart
-        ),
-        mistakes=(
-            Mistake(
-                _product_cut,
-                "Boxes apart both ways have two negative lengths, whose product is positive: cut each off at 0 first.",
-                others=(_product_uncut,),
-            ),
-            Mistake(
-                lambda a, b, w: 100 * overlap(a, b, w),
-                "That is in percent. The IoU is a share: 1 for the same box.",
-            ),
-            Mistake(
-                lambda a, b, w: _iou(_across(a, b) * _down(a, b), a, b),
-                "Across the seam yours is 0: one of the boxes may have to be moved by a whole turn first.",
-            ),
-            Mistake(
-                lambda a, b, w: _iou((min(a[2], b[2]) - max(a[0], b[0])) * (min(a[3], b[3]) - max(a[1], b[1])), a, b),
-                "Two things: boxes apart have negative lengths (cut them off at 0), and the seam needs a turn.",
-            ),
-            Mistake(
-                lambda a, b, w: float(_shared_on_circle(a, b, w) / (_area(a) + _area(b))),
-                "The shared area is in both boxes, so you count it twice below. Take it away once.",
-            ),
-            Mistake(
-                lambda a, b, w: float(_shared_on_circle(a, b, w) / min(_area(a), _area(b))),
-                "You divide by the smaller box. Below stands the area of the union.",
-            ),
-            Mistake(
-                lambda a, b, w: float(_shared_on_circle(a, b, w) / _area(a)),
-                "You divide by the first box alone. Below stands the area of the union.",
-            ),
-            Mistake(
-                lambda a, b, w: float(_shared_on_circle(a, b, w) / _area(b)),
-                "You divide by the second box alone. Below stands the area of the union.",
-            ),
-            Mistake(
-                lambda a, b, w: float(_shared_on_circle(a, b, w) / max(_area(a), _area(b))),
-                "You divide by the larger box. Below stands the area of the union.",
-            ),
-            Mistake(
-                _moved_if_across,
-                "You move a box only where it passes the seam itself. The other one may end before it: try all turns.",
-            ),
-            Mistake(
-                lambda a, b, w: _uncut(a, b, w, across=True),
-                "Boxes that are apart side by side share nothing: cut the length across off at 0.",
-            ),
-            Mistake(
-                lambda a, b, w: _uncut(a, b, w, across=False),
-                "Boxes one above the other share nothing: cut the length down off at 0.",
-            ),
-            Mistake(
-                lambda a, b, w: _iou(
-                    _across(_edges_on_image(a, w), _edges_on_image(b, w)) * _down(a, b),
-                    *(_edges_on_image(box, w) for box in (a, b)),
-                ),
-                "The remainder of u_max turns a box at the seam inside out: its right edge is then left of the other.",
-            ),
-            Mistake(
-                lambda a, b, w: float(_shared_on_circle(a, b, w)),
-                "That is the shared area in square pixels. Divide by the area of the union.",
-            ),
-            Mistake(
-                _two_places(0, 1),
-                "You try the second box where it is and one turn to the right. It may have to go to the left as well.",
-            ),
-            Mistake(
-                _two_places(0, -1),
-                "You try the second box where it is and one turn to the left. It may have to go to the right as well.",
-            ),
-            Mistake(
-                _two_places(-1, 1),
-                "You try the second box one turn to the left and to the right, but no longer where it is.",
-            ),
-            Mistake(
-                _two_places(-1, np.inf),
-                "You always move the second box one turn to the left. Mostly it is right where it is: try all three.",
-            ),
-            Mistake(
-                _lengths_added_uncut,
-                "You add up negative lengths as well: where the boxes do not meet, the length is 0.",
-            ),
-            Mistake(
-                lambda a, b, w: overlap(a, b, 1280),
-                "Your panorama is always 1280 columns wide: use the argument.",
-            ),
-        ),
-    ),
-    Exercise(
-        number="12.3",
-        solution=surest,
-        inputs=_answers_of_a_network,
-        cases=(
-            lambda rng: _squares([0, 4, 8], [0, 0, 0], [0.9, 0.8, 0.7], 0.1, 0.4),  # a chain: the last one stays
-            lambda rng: _squares([0, 0], [0, 1], [0.6, 0.7], 0.1, 0.4),  # one place, two classes
-            lambda rng: _squares([0, 5], [1, 1], [0.6, 0.7], 0.1, 1 / 3),  # IoU equal to the limit
-            lambda rng: _squares([0, 30], [1, 1], [0.5, 0.7], 0.5, 0.4),  # a score equal to the threshold
-            lambda rng: _squares([0, 30], [1, 1], [0.2, 0.3], 0.5, 0.4),  # nothing is good enough
-            lambda rng: _squares([30, 0, 60], [1, 1, 1], [0.5, 0.7, 0.6], 0.1, 0.4),
-            lambda rng: (np.zeros((0, 4)), np.zeros((0, 3)), 0.5, 0.4),  # no answer at all
-            lambda rng: (
-                _SQUARE + np.zeros((2, 1)),
-                np.array([[0.9, 0.1], [0.7, 0.6]]),
-                0.5,
-                0.4,
-            ),  # two likely classes
-        ),
-        mistakes=(
-            Mistake(
-                _in_several_classes,
-                "A box has one class, that of its greatest score. In yours it takes part in several.",
-            ),
-            Mistake(
-                lambda boxes, scores, threshold, limit: _suppressed(boxes, scores[:, :1], threshold, limit),
-                "You look at the first class alone. A box's score is the greatest of its row.",
-            ),
-            Mistake(
-                _slip(by_class=False),
-                "A chair may stand before a sofa: only boxes of the same class put each other out.",
-            ),
-            Mistake(
-                _slip(kept_only=False),
-                "You compare with every surer box, also with those that went. Only a box that stayed puts others out.",
-            ),
-            Mistake(_slip(sort=False), "You go through the rows in their order. The surest box comes first."),
-            Mistake(
-                lambda *given: np.sort(surest(*given)),
-                "The right rows, but in the order of the list. The greatest score comes first.",
-            ),
-            Mistake(
-                _of_the_short_list,
-                "Your numbers count within those that reach the threshold. Give their rows in the list as given.",
-            ),
-            Mistake(
-                _class_after_class,
-                "The right rows, but class after class. The greatest score of all comes first.",
-            ),
-            Mistake(
-                lambda *given: surest(*given)[::-1],
-                "The right rows, but the least score first. np.argsort goes upwards.",
-            ),
-            Mistake(
-                _slip(rival=np.greater_equal),
-                "An IoU just equal to the limit is allowed: a box goes when it overlaps more than that.",
-            ),
-            Mistake(_slip(enough=np.greater), "A score equal to the threshold is enough: at least, not more than."),
-            Mistake(
-                _slip(overlap_of=_shared_of_the_smaller),
-                "You divide by the smaller box. The intersection over union has the union below.",
-            ),
-            Mistake(
-                _slip(overlap_of=lambda a, b: _across(a, b) * _down(a, b) / (_area(a) + _area(b))),
-                "Below the shared area stands the union: the sum of both areas counts what they share twice.",
-            ),
-            Mistake(
-                _one_of_each_class,
-                "You keep one box a class. There may be several chairs: only those that overlap are one.",
-            ),
-            Mistake(
-                lambda boxes, scores, threshold, limit: _suppressed(boxes, scores, threshold, np.inf),
-                "Nothing is put out in yours, only sorted: of boxes on one thing the surest alone stays.",
-            ),
-            Mistake(
-                lambda boxes, scores, threshold, limit: _suppressed(boxes, scores, 0.0, limit),
-                "You use no threshold: rows with less than that never count.",
-            ),
-            Mistake(
-                lambda boxes, scores, threshold, limit: np.isin(
-                    np.arange(len(boxes)), _suppressed(boxes, scores, threshold, limit)
-                ),
-                "Yours is True or False for each row. Give the numbers of the rows that stay.",
-            ),
-            Mistake(
-                lambda boxes, scores, threshold, limit: boxes[_suppressed(boxes, scores, threshold, limit)],
-                "These are the boxes themselves. Give the numbers of their rows.",
-            ),
-        ),
-    ),
-    Exercise(
-        number="12.4",
-        level="challenge",
-        solution=lowest_threshold,
-        inputs=_validation_boxes,
-        verify=_refused,
-        cases=(
-            lambda rng: (np.array([0.6, 0.9, 0.7, 0.8]), np.ones(4, bool), 0.5),
-            lambda rng: (np.array([0.6, 0.9, 0.7, 0.8]), np.ones(4, bool), 0.6),  # four are too few to be sure
-            lambda rng: (np.linspace(0.1, 0.9, 50), np.zeros(50, bool), 0.5),  # all of them wrong
-            lambda rng: (np.full(40, 0.5), np.arange(40) < 36, 0.8),  # equal scores: all go or all stay
-            lambda rng: (
-                np.round(np.linspace(0.99, 0.2, 80), 2),
-                np.r_[np.ones(20, bool), np.zeros(4, bool), np.ones(56, bool)],
-                0.8,
-            ),
-        ),
-        mistakes=(
-            Mistake(
-                lambda scores, right, least: _lowest(scores, right, least, _plain_share),
-                "That is the plain share. Of 4 boxes, 4 right ones prove little: the lower end must reach `least`.",
-            ),
-            Mistake(
-                lambda scores, right, least: _lowest(scores, right, least, _wald_low),
-                "p - z sqrt(p (1-p) / n) has no width where all are right. Wilson has the true share in the root.",
-            ),
-            Mistake(
-                lambda scores, right, least: _lowest(scores, right, least, _wilson_high),
-                "That is the upper end of the interval. The lower end must reach `least`.",
-            ),
-            Mistake(
-                _until_it_fails,
-                "You stop when it fails for the first time. Precision goes up and down: lower thresholds may do again.",
-            ),
-            Mistake(_highest, "That is the highest good threshold. The lowest one finds most objects."),
-            Mistake(
-                _row_by_row(lambda scores: np.argsort(-scores, kind="stable")),
-                "Boxes with equal scores stay or go together: no threshold cuts between them.",
-                others=(
-                    _row_by_row(lambda scores: np.argsort(-scores)),
-                    _row_by_row(lambda scores: np.argsort(scores)[::-1]),
-                    _row_by_row(lambda scores: np.argsort(scores, kind="stable")[::-1]),
-                ),
-            ),
-            Mistake(
-                lambda scores, right, least: _lowest(scores, right, least, _wilson_low, enough=np.greater),
-                "You keep boxes with more than t. A box with a score of just t is kept, too.",
-            ),
-            Mistake(
-                lambda scores, right, least: _lowest(scores, right, least, lambda hits, n: _wilson_low(hits, n, 1.645)),
-                "z = 1.645 is for 90 %. The task has z = 1.96.",
-            ),
-            Mistake(
-                lambda scores, right, least: _lowest(scores, right, least, lambda hits, n: _wilson_low(hits, n, 1.0)),
-                "z = 1 is one standard deviation, about 68 %. The task has z = 1.96.",
-            ),
-            Mistake(
-                lambda scores, right, least: _lowest(scores, right, least, _without_the_middle),
-                "Something is missing above Wilson's fraction line: the middle of the interval is not k / n itself.",
-            ),
-            Mistake(
-                _share_of_all,
-                "The share is that of the boxes kept, those with a score of at least t, not of all boxes.",
-            ),
-            Mistake(
-                _best_f1, "That is the threshold with the best F1. Asked: the lowest with a precision to believe in."
-            ),
-        ),
-    ),
+    Exercise("12.1", counts_once, boxes_near_the_ends, "warm-up", cases=[
+        case("half columns", np.array([[90.0, 0, 110, 9], [91, 0, 110, 9], [92, 0, 110, 9]]), 1280, 100.25),
+        case("no boxes", np.zeros((0, 4)), 1280, 160.0),
+    ], mistakes="""
+        (boxes[:, 0] + boxes[:, 2]) / 2 => boxes[:, 0] + boxes[:, 2] / 2
+        Numbers 2 and 3 of a box are u_max and v_max, not its width and height.
+        boxes[:, 2]) / 2 => boxes[:, 2]) // 2
+        `//` cuts half columns off. A centre may lie between two columns: divide with `/`.
+        (boxes[:, 0] + boxes[:, 2]) / 2 => boxes[:, 0]
+        (boxes[:, 0] + boxes[:, 2]) / 2 => boxes[:, 2]
+        You look at the left edge or the right edge alone. The centre of the box decides.
+        (boxes[:, 0] + boxes[:, 2]) / 2 => (boxes[:, 1] + boxes[:, 3]) / 2
+        (boxes[:, 0] + boxes[:, 2]) / 2 => (boxes[:, 2] - boxes[:, 0]) / 2
+        The centre's column is the mean of u_min and u_max: add numbers 0 and 2 of a box, and halve the sum.
+        < start + width => < width
+        < start + width => < width - start
+        Your range ends at W or before: less than one turn, so that some objects count nowhere. It ends at start + W.
+        ... => return counts_once(boxes, width, 0)
+        ... => return counts_once(boxes, width, width / 8)
+        You take a fixed range, from 0 or, as in the lesson, from W/8. Here it begins at `start`.
+        ) & ( => ) | (
+        All of yours count: a centre must obey both conditions, not one of them.
+        < start + width => <= start + width
+        A centre on the right end counts in yours, and so does its copy on the left end: twice in all.
+        >= start => > start
+        >= start => > start and also < start + width => <= start + width
+        A centre right on the left end is lost in yours. The left end belongs to the range, the right end does not.
+        centre >= start => boxes[:, 0] >= start and also centre < => boxes[:, 2] <
+        You ask for the whole box inside. Then an object on either end of the range never counts.
+        & (centre < start + width) =>
+        < start + width => < start + 1.25 * width
+        Your range does not end within the extended image. It is one turn wide: W, without the quarter added.
+    """),
+    Exercise("12.2", overlap, two_boxes, cases=[
+        case("half a turn apart", box(100, 300, 200, 400), box(740, 300, 840, 400), 1280),
+        case("a across the seam", box(1200, 300, 1300, 400), box(0, 300, 20, 400), 1280),
+        case("b across the seam", box(0, 300, 20, 400), box(1200, 300, 1300, 400), 1280),
+        case("equal boxes", box(1200, 300, 1300, 400), box(1200, 300, 1300, 400), 1280),
+        case("side by side", box(100, 300, 200, 400), box(200, 300, 300, 400), 1280),
+        case("far apart", box(100, 300, 200, 400), box(900, 450, 950, 500), 1280),
+    ], mistakes="""
+        (-width, 0, width) => (0,)
+        Across the seam yours is 0: one of the boxes may have to be moved by a whole turn first.
+        max(0, => max(-np.inf, and also (-width, 0, width) => (0,)
+        Two things: boxes apart have negative lengths (cut them off at 0), and the seam needs a turn.
+        max(0, min(a[2] => max(-np.inf, min(a[2]
+        sum(max(0, => max(max(-np.inf,
+        Boxes that are apart side by side share nothing: cut every length across off at 0 before you use it.
+        max(0, min(a[3] => max(-np.inf, min(a[3]
+        Boxes one above the other share nothing: cut the length down off at 0.
+        / (sum(areas) - shared) => / sum(areas)
+        The shared area is in both boxes, so you count it twice below. Take it away once.
+        / (sum(areas) - shared) => / min(areas)
+        / (sum(areas) - shared) => / max(areas)
+        / (sum(areas) - shared) => / areas[0]
+        / (sum(areas) - shared) => / areas[1]
+        You divide by the area of one box (the smaller, the larger, a or b). Below stands the area of the union.
+        (-width, 0, width) => [width * (int(a[2] > width) - int(b[2] > width))]
+        You move a box only where it passes the seam itself. The other one may end before it: try all turns.
+        across = => a[::2] %= width; b[::2] %= width; across = and also (-width, 0, width) => (0,)
+        The remainder of u_max turns a box at the seam inside out: its right edge is then left of the other.
+        (-width, 0, width) => (0, width)
+        (-width, 0, width) => (-width, 0)
+        (-width, 0, width) => (-width, width)
+        (-width, 0, width) => (-width,)
+        b may have to go one turn to the left, one to the right, or stay where it is: try all three.
+    """, functions={
+        multiplied_first:
+            "Boxes apart both ways have two negative lengths, whose product is positive: cut each off at 0 first.",
+    }),
+    Exercise("12.3", surest, answers_of_a_network, cases=[
+        squares("a chain of overlaps", [0, 4, 8], [0, 0, 0], [0.9, 0.8, 0.7], 0.1, 0.4),
+        squares("one place and two classes", [0, 0], [0, 1], [0.6, 0.7], 0.1, 0.4),
+        squares("an IoU equal to the limit", [0, 5], [1, 1], [0.6, 0.7], 0.1, 1 / 3),
+        squares("a score equal to the threshold", [0, 30], [1, 1], [0.5, 0.7], 0.5, 0.4),
+        squares("no score that is enough", [0, 30], [1, 1], [0.2, 0.3], 0.5, 0.4),
+        squares("boxes apart", [30, 0, 60], [1, 1, 1], [0.5, 0.7, 0.6], 0.1, 0.4),
+        case("no boxes", np.zeros((0, 4)), np.zeros((0, 3)), 0.5, 0.4),
+        case("two likely classes", np.array([[0.0, 0, 10, 10]] * 2), np.array([[0.9, 0.1], [0.7, 0.6]]), 0.5, 0.4),
+    ], mistakes="""
+        ... => return surest(boxes, scores[:, :1], threshold, limit)
+        You look at the first class alone. A box's score is the greatest of its row.
+        & (classes[kept] == classes[i]) =>
+        A chair may stand before a sofa: only boxes of the same class put each other out.
+        [kept => [best > best[i]
+        You compare with every surer box, also with those that went. Only a box that stayed puts others out.
+        np.argsort(-best) => range(len(best))
+        You go through the rows in their order. The surest box comes first.
+        np.array(kept, dtype=int) => np.sort(np.array(kept, dtype=int))
+        np.array(kept, dtype=int) => np.array(kept[::-1], dtype=int)
+        np.array(kept, dtype=int) => np.array(sorted(kept, key=lambda i: classes[i]), dtype=int)
+        The right rows in a wrong order (as given, least score first, or class after class): the surest comes first.
+        ... => good = scores.max(axis=1) >= threshold; return surest(boxes[good], scores[good], threshold, limit)
+        Your numbers count within those that reach the threshold. Give their rows in the list as given.
+        (shared > limit => (shared >= limit
+        best[i] >= threshold => best[i] > threshold
+        An IoU just equal to the limit is allowed, and a score equal to the threshold is enough.
+        (areas[i] + areas[kept] - shared) => np.minimum(areas[i], areas[kept])
+        (areas[i] + areas[kept] - shared) => (areas[i] + areas[kept])
+        Below the shared area stands the union: not the smaller box, and what both share counts once only.
+        (shared > limit * (areas[i] + areas[kept] - shared)) & =>
+        You keep one box a class. There may be several chairs: only those that overlap are one.
+        and not in_the_way.any() =>
+        Nothing is put out in yours, only sorted: of boxes on one thing the surest alone stays.
+        best[i] >= threshold and =>
+        You use no threshold: rows with less than that never count.
+    """, functions={
+        in_several_classes: "A box has one class, that of its greatest score. In yours it takes part in several.",
+    }),
+    Exercise("12.4", lowest_threshold, validation_boxes, "challenge", verify=refused, cases=[
+        case("four right boxes", FOUR_SCORES, np.ones(4, bool), 0.5),
+        case("too few boxes to be sure", FOUR_SCORES, np.ones(4, bool), 0.6),
+        case("all boxes wrong", np.linspace(0.1, 0.9, 50), np.zeros(50, bool), 0.5),
+        case("equal scores", np.full(40, 0.5), np.arange(40) < 36, 0.8),
+        case("several crossings", np.round(np.linspace(0.99, 0.2, 80), 2), np.arange(80) // 4 != 5, 0.8),
+    ], mistakes="""
+        if (share + z**2 / (2 * n) - root) / (1 + z**2 / n) => if share
+        That is the plain share. Of 4 boxes, 4 right ones prove little: the lower end must reach `least`.
+        if (share + z**2 / (2 * n) - root) / (1 + z**2 / n) => if share - z * np.sqrt(share * (1 - share) / n)
+        p - z sqrt(p (1-p) / n) has no width where all are right. Wilson has the true share in the root.
+        - root => + root
+        That is the upper end of the interval. The lower end must reach `least`.
+        ... => return max(all_good(scores, right, least), default=np.inf)
+        That is the highest good threshold. The lowest one finds most objects.
+        ... => return lowest_threshold(scores - 1e-9 * np.argsort(np.argsort(-scores)), right, least)
+        ... => return lowest_threshold(scores + 1e-9 * np.argsort(np.argsort(scores)), right, least)
+        ... => return lowest_threshold(scores - 1e-9 * np.arange(len(scores)), right, least)
+        ... => return lowest_threshold(scores + 1e-9 * np.arange(len(scores)), right, least)
+        Boxes with equal scores stay or go together: no threshold cuts between them.
+        np.unique(scores) => np.unique(scores)[:-1] and also scores >= t => scores > t
+        You keep boxes with more than t. A box with a score of just t is kept, too.
+        z = 1.96 => z = 1.645
+        z = 1.96 => z = 1.0
+        z = 1.645 is for 90 %, z = 1 for about 68 %. The task has z = 1.96.
+        share + z**2 / (2 * n) - root => share - root
+        Something is missing above Wilson's fraction line: the middle of the interval is not k / n itself.
+        kept.sum(), right[kept].mean() => len(scores), right[kept].sum() / len(scores)
+        The share is that of the boxes kept, those with a score of at least t, not of all boxes.
+    """, functions={
+        until_it_fails:
+            "You stop when it fails for the first time. Precision goes up and down: lower thresholds may do again.",
+    }),
 ]
