@@ -13,6 +13,7 @@ import nbformat
 
 from course_lib.classroom.assignment_cells import Assignment, AssignmentError, tag_of
 from course_lib.classroom.model_answers import function_name, model_bodies, solved_stub
+from course_lib.commands.working_copies import clear_answers
 from course_lib.paths import REPOSITORY
 
 NOTEBOOKS = REPOSITORY / "notebooks"
@@ -71,7 +72,14 @@ ELSEWHERE = re.compile(r"[a-z]+:|#|//")
 
 
 def student_notebook(assignment: Assignment, resolve: Resolve | None = None) -> nbformat.NotebookNode:
-    """A lesson without its solution cells, counts from 1 to n, its links by `resolve` (`relinked`)."""
+    """A lesson without its solution cells and measured answers, counts from 1 to n, links by `resolve` (`relinked`)."""
+    notebook = unsolved_notebook(assignment, resolve)
+    clear_answers(notebook.cells)
+    return notebook
+
+
+def unsolved_notebook(assignment: Assignment, resolve: Resolve | None = None) -> nbformat.NotebookNode:
+    """A lesson without its solution cells, with all that it measured."""
     notebook = assignment.notebook()
     notebook.cells = [cell for cell in notebook.cells if tag_of(cell) != "solution"]
     reword_cells(notebook, REWORDED.get(assignment.name, ()))
@@ -85,7 +93,7 @@ def solved_notebook(assignment: Assignment, resolve: Resolve | None = None, cana
 
     canary: stands in every answer as a comment.
     """
-    notebook = student_notebook(assignment, resolve)
+    notebook = unsolved_notebook(assignment, resolve)
     bodies = model_bodies(assignment)
     for cell in notebook.cells:
         if tag_of(cell) in ("exercise", "submission"):

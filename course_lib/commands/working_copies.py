@@ -18,6 +18,8 @@ NOTEBOOKS, WORK, MEMORY = "notebooks", "work", ".copies.json"
 LESSONS = ("[0-9][0-9]_*.ipynb", "projects/P[0-9]_*.ipynb")
 # What lessons show and link to. Not among it: projects/solutions, and scenes/yours, where a student's own scenes go.
 COMPANIONS = ("*.md", "pictures/*", "scenes/*.html", "projects/*.md")
+# Sections whose stored outputs answer the predictions at a lesson's start. A student's copy has none there.
+MEASURED = ("## Measure", "## Break it", "## Recap")
 
 
 def lessons(root: Path) -> dict[str, str]:
@@ -63,7 +65,7 @@ def make_copies(root: Path, fresh: Sequence[str] = (), today: datetime.date | No
     first, edited, before = not memory, _changed_in_place(root), json.dumps(memory)
     told = [f"Your copies of the lessons are in {WORK}/, which git leaves alone."] if first else []
     for name in [*numbers.values(), *_below_notebooks(root, COMPANIONS)]:
-        content, mine = (root / NOTEBOOKS / name).read_bytes(), work / name
+        content, mine = _fresh_copy(root / NOTEBOOKS / name), work / name
         begun, is_lesson, number = memory.get(name, {}), name in numbers.values(), mine.name[:2]
         if is_lesson and number in again and mine.exists():
             old = _free_name(mine, today or datetime.date.today())
@@ -94,6 +96,29 @@ def make_copies(root: Path, fresh: Sequence[str] = (), today: datetime.date | No
     if json.dumps(memory) != before:
         atomic_write(work / MEMORY, json.dumps(memory, indent=1))
     return told
+
+
+def _fresh_copy(path: Path) -> bytes:
+    """Return the bytes of a student's copy of a file of the course: of a lesson, without the measured answers."""
+    content = path.read_bytes()
+    if path.suffix != ".ipynb":
+        return content
+    try:
+        notebook = json.loads(content)
+        clear_answers(notebook["cells"])
+    except (ValueError, KeyError, TypeError):  # for example in the middle of a git merge
+        return content
+    return (json.dumps(notebook, indent=1, ensure_ascii=False, sort_keys=True) + "\n").encode()
+
+
+def clear_answers(cells: list[dict]) -> None:
+    """Clear what the code cells of the sections `MEASURED` show; they show it again when the student runs them."""
+    section = ""
+    for cell in cells:
+        if cell["cell_type"] == "markdown" and "".join(cell["source"]).startswith("## "):
+            section = "".join(cell["source"]).partition("\n")[0]
+        elif cell["cell_type"] == "code" and section.startswith(MEASURED):
+            cell["outputs"] = []
 
 
 def _remembered(path: Path) -> dict[str, dict]:

@@ -1,7 +1,6 @@
 """`bench --lessons`: what a kernel and its children take is seen, nothing is stored; the server that it asks for."""
 
 import json
-import subprocess
 import sys
 from pathlib import Path
 
@@ -13,25 +12,6 @@ from tools import lesson_costs, refresh
 from tools.lesson_costs import Cost
 
 HELD_MB = 300
-BURN = "import time\nwhile time.process_time() < 0.5: pass\n"
-WAIT = "import sys\nprint('ready', flush=True)\nsys.stdin.read()\n"
-CHILD = f"held = bytearray(b'x') * {HELD_MB}_000_000\n{BURN}{WAIT}"
-PROGRAM = "import subprocess, sys\nchild = subprocess.Popen([sys.executable, '-c', {}], stdin=subprocess.PIPE)\n"
-PROGRAM = PROGRAM.format(repr(CHILD)) + "sys.stdin.read(); child.communicate()"
-
-
-@pytest.mark.slow
-def test_what_a_process_and_its_children_take_is_seen():
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-    with subprocess.Popen([sys.executable, "-c", PROGRAM], **pipes) as process:
-        with lesson_costs.watched(process.pid, "", costs := []):
-            assert process.stdout.readline().strip() == "ready"
-        process.stdin.close()
-    (cost,) = costs
-    assert cost.processor_s >= 0.45
-    assert cost.peak_mb >= HELD_MB
-    if sys.platform.startswith("linux"):
-        assert HELD_MB <= cost.own_mb < cost.peak_mb - 2, "the files of interpreters are not their own"
 
 
 @pytest.mark.slow
@@ -43,6 +23,9 @@ def test_a_notebook_is_measured_and_nothing_is_stored(tmp_path):
     cost = lesson_costs.notebook_cost(path)
     assert cost.name == "99"
     assert cost.peak_mb >= HELD_MB
+    assert cost.processor_s > 0.1, "the kernel's start alone takes more"
+    if sys.platform.startswith("linux"):
+        assert HELD_MB <= cost.own_mb < cost.peak_mb - 2, "the files of the interpreter are not its own"
     assert path.read_bytes() == before
     assert list(tmp_path.iterdir()) == [path], "what its cells write goes to a folder that is thrown away"
 

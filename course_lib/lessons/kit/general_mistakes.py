@@ -115,7 +115,9 @@ def argument_slips(solution: Callable, given: tuple) -> Iterator[tuple[str, Call
 
 def code_slips(solution: Callable) -> Iterator[tuple[str, Callable]]:
     """Yield functions with one place of the solution's code changed, then with all places of one kind of slip."""
-    source = textwrap.dedent(inspect.getsource(solution))
+    source = textwrap.dedent(inspect.getsource(solution)) if inspect.isfunction(solution) else ""
+    if not source.startswith("def "):  # a lambda, or compiled code
+        return
     places: dict[str, list] = {}
     for node in _expressions(ast.parse(source).body[0]):
         start, end = (
@@ -218,10 +220,12 @@ def _changes(node: ast.AST) -> Iterator[tuple[str, str]]:
 
 def constant_difference(answers: list, wanted: list, tolerance: float) -> str | None:
     """Return a sentence if all answers are nearly right, or differ by the same factor or summand; else None."""
+    if isinstance(wanted[0], tuple) and not all(is_row_of(len(wanted[0]), answer) for answer in answers):
+        return None
     pairs = [
         (as_numbers(a), np.asarray(w, dtype=float))
         for answer, right in zip(answers, wanted, strict=True)
-        for a, w in zip(answer if is_row_of(len(parts(right)), answer) else (answer,), parts(right), strict=False)
+        for a, w in zip(answer if isinstance(right, tuple) else (answer,), parts(right), strict=True)
     ]
     if any(a is None or a.shape != w.shape for a, w in pairs):
         return None
