@@ -13,10 +13,10 @@ from course_lib.spherical_stereo.ranging.triangulation import OK, triangulation_
 def triangulation_panel() -> Panel:
     """Sliders for the object, the rig and the noise; the triangle from the side, and from above the error ellipse."""
     figure, (side, above) = figures.new_figure(1, 2, size=(9.8, 3.9))
-    side.set(title="From the side: rays, one sigma wide", xlabel="horizontal range [m]", ylabel="height [m]")
-    side.set(xlim=(-0.3, 10), ylim=(-0.1, 3.1))
-    above.set(title="From above: where the object may be", xlabel="x, forward [m]", ylabel="y, left [m]")
-    above.set(xlim=(-0.5, 10), ylim=(-4.2, 4.2))
+    names = {"title": "From the side: rays, one sigma wide", "xlabel": "horizontal range [m]", "ylabel": "height [m]"}
+    side.set(**names, xlim=(-0.3, 10), ylim=(-0.1, 3.1))
+    names = {"title": "From above: where the object may be", "xlabel": "x, forward [m]", "ylabel": "y, left [m]"}
+    above.set(**names, xlim=(-0.5, 10), ylim=(-4.2, 4.2))
     colours = (figures.BLUE, figures.ORANGE)
     wedges = [side.add_patch(Polygon(np.zeros((3, 2)), color=colour, alpha=0.35)) for colour in colours]
     (cameras,) = side.plot([], [], "o", color="black", markersize=6)
