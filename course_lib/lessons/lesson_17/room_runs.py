@@ -1,132 +1,155 @@
-"""Stored results of the room experiment: what `demo room --seed N` wrote, read back for lessons.
-
-data/room/results/ holds seed_N.json (the summary: tables 3 to 5) and seed_N.csv (one row a pose) of every seed.
-"""
+"""The poses of both experiments: those from exact boxes, the stored ones with their tables, and why poses fail."""
 
 import csv
+import functools
 import json
-import re
-from collections.abc import Sequence
-from pathlib import Path
+from collections import Counter
 from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.experiments.room_evaluation import CORRECT, PAPER_TABLE_3, PAPER_TABLE_4, PAPER_TABLE_5
+from course_lib.experiments import room_evaluation
+from course_lib.experiments.room import PairResult, run_experiment
+from course_lib.lessons.kit.room_observations import in_body_frame
+from course_lib.lessons.kit.room_photographs import room_map, room_recording
 from course_lib.paths import data_path
+from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.semantic_map.association import Observation, penalty
 
-METHODS = {"images": "greedy", "exact_boxes": "greedy_exact_boxes"}
+SOURCES = {"images": "greedy", "exact_boxes": "greedy_exact_boxes"}
 """Source of the detections -> its key in a summary."""
 NAMES = {"images": "ours, from images", "exact_boxes": "ours, exact boxes"}
-RATES = ("correct_percent", "incorrect_percent", "unable_percent")
-ERRORS = ("mean_dx_m", "mean_dy_m", "mean_dtheta_deg", "std_dx_m", "std_dy_m", "std_dtheta_deg")
-_PAPER_ERRORS = {1: PAPER_TABLE_3, 2: PAPER_TABLE_4}
+RATES = [f"{kind}_percent" for kind in room_evaluation.KINDS]
+CURES = ("true places", "true colours", "true centroid")
+"""What a failing pose is given in place of its measurement, one at a time."""
+
+
+@functools.cache
+def exact_results(experiment: int) -> list[PairResult]:
+    """Return all 20 poses from exact boxes."""
+    recorded = room_recording(experiment)
+    localizer = SemanticLocalizer(recorded.rig, room_map(), reject_implausible=False)
+    return run_experiment(recorded, localizer, "exact_boxes")
 
 
 class StoredRoom(NamedTuple):
-    """One seed of the experiment: both heights, from images and from exact boxes."""
+    """One seed of the experiment, as `demo room --seed N` wrote it: tables 3 to 5, and a row for every pose."""
 
     seed: int
     summary: dict
     rows: list[dict]
-    """One a pose: experiment, source, place, outcome, used_pairs (text, as in the file) and more."""
 
     def outcomes(self, experiment: int, source: str) -> dict[str, str]:
-        """Name of the pose, such as "06_a" -> "correct", "incorrect" or "unable"."""
+        """Return name of the pose, such as "06_a" -> "correct", "incorrect" or "unable"."""
         wanted = (f"experiment_{experiment}", source)
         return {row["place"]: row["outcome"] for row in self.rows if (row["experiment"], row["source"]) == wanted}
 
-
-def stored_rooms(folder: Path | None = None) -> list[StoredRoom]:
-    """All seeds found in `folder` (default: data/room/results), in order. Raises `FileNotFoundError` for none."""
-    folder = data_path("room/results") if folder is None else Path(folder)
-    paths = [path for path in folder.glob("seed_*.json") if re.fullmatch(r"seed_\d+", path.stem)]
-    if not paths:
-        raise FileNotFoundError(f"no seed_N.json in {folder}: `python3 course.py demo room --seed N --out X` makes one")
-    return sorted((_read(path) for path in paths), key=lambda run: run.seed)
+    def table(self, experiment: int, source: str) -> dict:
+        """Return the rates, and the errors of "all", "correct" and "incorrect" poses."""
+        return self.summary[f"experiment_{experiment}"][SOURCES[source]]
 
 
-def _read(path: Path) -> StoredRoom:
-    summary = json.loads(path.read_text(encoding="utf-8"))
-    with path.with_suffix(".csv").open(newline="", encoding="utf-8") as file:
-        return StoredRoom(int(path.stem.removeprefix("seed_")), summary, list(csv.DictReader(file)))
+def stored_rooms() -> list[StoredRoom]:
+    """Return all seeds of data/room/results."""
+    paths = sorted(data_path("room/results").glob("seed_*.json"))
+    rows = [list(csv.DictReader(path.with_suffix(".csv").read_text("utf-8").splitlines())) for path in paths]
+    summaries = [json.loads(path.read_text("utf-8")) for path in paths]
+    return [StoredRoom(int(path.stem[5:]), *one) for path, *one in zip(paths, summaries, rows, strict=True)]
 
 
-def rates(runs: Sequence[StoredRoom], experiment: int, source: str) -> np.ndarray:
-    """Correct, incorrect and unable of every seed, percent `(S, 3)`."""
-    found = [run.summary[f"experiment_{experiment}"][METHODS[source]] for run in runs]
-    return np.array([[one[key] for key in RATES] for one in found])
+def failing_places(runs: list[StoredRoom], experiment: int) -> dict[str, int]:
+    """Return pose -> in how many seeds it was not correct from images, the most frequent first."""
+    found = [one for run in runs for one in run.outcomes(experiment, "images").items()]
+    counts = Counter(place for place, kind in found if kind != "correct")
+    return dict(sorted(counts.items(), key=lambda item: (-item[1], item[0])))
 
 
-class TwoHeights(NamedTuple):
-    """The same poses with the lower rig (experiment 1) and the higher one (experiment 2), over all seeds."""
-
-    poses: int
-    lower: int
-    """Correct with the lower rig."""
-    higher: int
-    lost: int
-    """Correct with the lower rig alone."""
-    gained: int
-    """Correct with the higher rig alone."""
+def rates(runs: list[StoredRoom], experiment: int, source: str) -> np.ndarray:
+    """Return correct, incorrect and unable of every seed, percent `(S, 3)`."""
+    return np.array([[run.table(experiment, source)[key] for key in RATES] for run in runs])
 
 
-def two_heights(runs: Sequence[StoredRoom], source: str) -> TwoHeights:
-    """How many poses are correct at either height, and how many change."""
-    correct = np.array(
-        [
-            [found == CORRECT for found in (run.outcomes(1, source)[place], run.outcomes(2, source)[place])]
-            for run in runs
-            for place in run.outcomes(1, source)
-        ]
-    )
-    lower, higher = correct.T
-    lost, gained = int((lower & ~higher).sum()), int((higher & ~lower).sum())
-    return TwoHeights(len(correct), int(lower.sum()), int(higher.sum()), lost, gained)
+def errors(runs: list[StoredRoom], experiment: int, source: str, kind: str) -> np.ndarray:
+    """Return a row of table 3 or 4 `(6,)`: the median over the seeds that have poses of this kind."""
+    found = [run.table(experiment, source)[kind] for run in runs]
+    return np.median([[one[key] for key in room_evaluation.ERRORS] for one in found if one["n"]], axis=0)
 
 
-def errors(runs: Sequence[StoredRoom], experiment: int, source: str, kind: str) -> np.ndarray:
-    """A row of table 3 or 4 `(6,)`: the median over the seeds that have such poses; NaN where none has."""
-    found = [run.summary[f"experiment_{experiment}"][METHODS[source]][kind] for run in runs]
-    values = [[one[key] for key in ERRORS] for one in found if one["n"]]
-    return np.median(values, axis=0) if values else np.full(len(ERRORS), np.nan)
-
-
-def used_pairs(runs: Sequence[StoredRoom], source: str) -> np.ndarray:
-    """How many pairs each pose of every seed and both experiments used `(n,)`."""
-    return np.array([int(row["used_pairs"]) for run in runs for row in run.rows if row["source"] == source])
-
-
-def table_5(runs: Sequence[StoredRoom]) -> str:
-    """The paper's table 5 and ours: percent of the poses, the median over the seeds and their range."""
-    lines = [f"{'% of the poses':36} {'correct':>14} {'incorrect':>14} {'unable':>14}"]
-    for experiment in (1, 2):
-        paper = "".join(f"{PAPER_TABLE_5[experiment][key]:>15.0f}" for key in RATES)
-        lines.append(f"{f'experiment {experiment}, paper':36}{paper}")
+def table_5(runs: list[StoredRoom]) -> str:
+    """Return the paper's table 5 and ours: percent of the poses, the median over the seeds and their range."""
+    lines = [("% of the poses", room_evaluation.KINDS)]
+    for experiment, paper in room_evaluation.PAPER_TABLE_5.items():
+        lines.append((f"experiment {experiment}, paper", [f"{paper[key]:.0f}" for key in RATES]))
         for source, name in NAMES.items():
-            found = rates(runs, experiment, source)
-            cells = [f"{np.median(v):.0f} ({v.min():.0f}-{v.max():.0f})" for v in found.T]
-            lines.append(f"{f'experiment {experiment}, {name}':36}" + "".join(f"{cell:>15}" for cell in cells))
-    return "\n".join(lines)
+            found = rates(runs, experiment, source).T
+            cells = [f"{np.median(values):.0f} ({values.min():.0f}-{values.max():.0f})" for values in found]
+            lines.append((f"experiment {experiment}, {name}", cells))
+    return "\n".join(f"{name:36}" + "".join(f"{cell:>15}" for cell in cells) for name, cells in lines)
 
 
-def table_3_or_4(runs: Sequence[StoredRoom], experiment: int) -> str:
-    """Table 3 (experiment 1) or 4 (experiment 2): the paper's rows, and ours as medians over the seeds."""
-    lines = [
-        f"{'':31}{'mean dx':>8} {'mean dy':>8} {'mean dtheta':>12} {'std x':>7} {'std y':>7} {'std theta':>10}",
-        f"{'':31}{'[m]':>8} {'[m]':>8} {'[deg]':>12} {'[m]':>7} {'[m]':>7} {'[deg]':>10}",
-    ]
+def table_3_or_4(runs: list[StoredRoom], experiment: int) -> str:
+    """Return table 3 (experiment 1) or 4 (experiment 2): the paper's rows, and ours as medians over the seeds."""
+    line = "{:31}{:>8} {:>8} {:>12} {:>7} {:>7} {:>10}"
+    lines = [line.format("", "mean dx", "mean dy", "mean dtheta", "std x", "std y", "std theta")]
+    lines.append(line.format("", "[m]", "[m]", "[deg]", "[m]", "[m]", "[deg]"))
+    paper = (room_evaluation.PAPER_TABLE_3, room_evaluation.PAPER_TABLE_4)[experiment - 1]
     for kind in ("all", "correct", "incorrect"):
-        paper = [_PAPER_ERRORS[experiment][kind][key] for key in ERRORS]
-        lines.append(_error_line(f"paper: {kind}", paper))
-        lines += [
-            _error_line(f"{name}: {kind}", errors(runs, experiment, source, kind)) for source, name in NAMES.items()
-        ]
+        ours = {name: errors(runs, experiment, source, kind) for source, name in NAMES.items()}
+        for name, values in {"paper": paper[kind].values(), **ours}.items():
+            cells = [f"{value:.{digits}f}" for value, digits in zip(values, (2, 2, 1, 2, 2, 1), strict=True)]
+            lines.append(line.format(f"{name}: {kind}", *cells))
     return "\n".join(lines)
 
 
-def _error_line(name: str, values: Sequence[float]) -> str:
-    if not np.isfinite(values).all():
-        return f"{name:31}{'no such pose':>14}"
-    dx, dy, dtheta, sx, sy, stheta = values
-    return f"{name:31}{dx:8.2f} {dy:8.2f} {dtheta:12.1f} {sx:7.2f} {sy:7.2f} {stheta:10.1f}"
+def thinned(result: PairResult, keep: np.ndarray, localizer: SemanticLocalizer) -> PairResult:
+    """Return the pose from the observations `keep` alone, judged by table 2."""
+    found = localizer.localize_observations([result.localization.observations[index] for index in keep])
+    landmarks = tuple(result.true_landmarks[index] for index in keep)
+    judged = room_evaluation.outcome(found, result.pair.pose, landmarks)
+    return result._replace(localization=found, true_landmarks=landmarks, outcome=judged)
+
+
+def randomly_thinned(results: list[PairResult], localizer: SemanticLocalizer, share_seen: float) -> list[PairResult]:
+    """Return every pose four times, each of its objects seen with probability `share_seen`, by itself."""
+    rng, found = np.random.default_rng(1), []
+    for result in [one for one in results for _ in range(4)]:
+        seen = rng.random(len(result.localization.observations)) < share_seen
+        found.append(thinned(result, np.flatnonzero(seen), localizer))
+    return found
+
+
+def is_matched_rightly(result: PairResult, cure: str | None = None) -> bool:
+    """Return whether eq. (1) and the greedy search give every pair of like classes rightly, with one of `CURES`.
+
+    Every observation must show a landmark, as exact boxes do. "true places": each object where the map has it. "true
+    colours": the map's own. "true centroid": the map's, as if every object had been seen.
+    """
+    room, seen, shown = room_map(), result.localization.observations, list(result.true_landmarks)
+    labels, x, y, hues, saturations = (np.array(column) for column in list(zip(*seen, strict=True))[:5])
+    places = np.column_stack([x, y])
+    if cure == "true places":
+        places = in_body_frame(room.positions[shown], result.pair.pose)
+    if cure == "true colours":
+        hues, saturations = room.hues[shown], room.saturations[shown]
+    centroid = places.mean(axis=0)
+    if cure == "true centroid":
+        centroid = in_body_frame(room.centroid[None], result.pair.pose)[0]
+    rows = Observation(*(column[:, None] for column in (labels, *places.T, hues, saturations)))
+    columns = Observation(np.array(room.labels), *room.positions.T, room.hues, room.saturations)
+    cost, is_right = penalty(rows, columns, centroid, room.centroid).total, True
+    for _ in range(min(cost.shape)):  # the greedy search: the cheapest open pair, until a side is used up
+        i, j = np.unravel_index(np.argmin(cost), cost.shape)
+        is_right &= shown[i] == j or labels[i] != room.labels[j]
+        cost[i], cost[:, j] = np.inf, np.inf
+    return bool(is_right)
+
+
+def failures(result: PairResult) -> list[str]:
+    """Return what went wrong with one pose, a line each: which observation was taken for which landmark."""
+    room, lines = room_map(), []
+    for observation, landmark, shown in room_evaluation.wrong_pairs(result.localization, result.true_landmarks):
+        label, (x, y) = result.localization.observations[observation].label, room.positions[landmark]
+        truth = "the {} at ({:.1f}, {:.1f})".format(room.labels[shown], *room.positions[shown])
+        truth = "nothing" if shown == room_evaluation.NO_OBJECT else truth
+        lines.append(f"the {label} that shows {truth} was taken for the one at ({x:.1f}, {y:.1f})")
+    return lines

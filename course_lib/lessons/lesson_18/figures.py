@@ -1,4 +1,7 @@
-"""Figures of lesson 18: by colour or by geometry, every pose of two matches, ellipses, risk, where there is doubt."""
+"""Figures of lesson 18: by colour or by geometry, every pose of two matches, ellipses, risk, where there is doubt.
+
+The docstring of a public figure is its alternative text.
+"""
 
 from collections.abc import Sequence
 
@@ -9,197 +12,199 @@ from matplotlib.patches import Ellipse
 
 from course_lib.beyond.look_alikes.confidence import MIN_CONFIDENCE
 from course_lib.beyond.look_alikes.evidence import NOISE_FACTOR
-from course_lib.beyond.look_alikes.hypotheses import MAP_SIGMA, PoseHypothesis, Scene, seen_from
+from course_lib.beyond.look_alikes.hypotheses import MAP_SIGMA, PoseHypothesis, Scene, scene_of, seen_from
 from course_lib.experiments.ambiguity import AmbiguityMap
+from course_lib.lessons.kit.display import described
 from course_lib.lessons.kit.room_observations import MatchingScene
+from course_lib.lessons.kit.room_photographs import room_map
 from course_lib.plots import figures
 from course_lib.plots.panorama_drawing import class_style
 from course_lib.plots.room_figures import draw_ambiguity, draw_pose, map_axes
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 SIGMAS = 2.0
-"""Standard deviations at which every ellipse of this lesson is drawn, but for that of a pose (`POSE_SIGMAS`)."""
-POSE_SIGMAS = 3.0
-_SHOWN = {"xlim": (-1.9, 6.4), "ylim": (-1.9, 6.5)}
-"""Of the shipped room: metres beyond its walls, for what a wrong pose lays there; an ellipse may be cut."""
+"""Standard deviations at which every ellipse of this lesson is drawn, but for that of a pose, which has three."""
+RING = {"marker": "o", "mfc": "none", "mec": figures.BLACK, "markersize": 11}
 
 
-def ellipse_of(centre: np.ndarray, covariance: np.ndarray, sigmas: float = SIGMAS) -> dict:
-    """xy, width, height and angle (degrees) of the curve on which (p - centre)^T C^-1 (p - centre) = sigmas^2."""
+def ellipse(centre: np.ndarray, covariance: np.ndarray, sigmas: float, **style) -> Ellipse:
+    """Return the curve on which (p - centre)^T C^-1 (p - centre) = sigmas^2."""
     variances, axes = np.linalg.eigh(covariance)
     width, height = 2 * sigmas * np.sqrt(np.maximum(variances, 0))
-    return {
-        "xy": tuple(map(float, centre)),
-        "width": float(width),
-        "height": float(height),
-        "angle": float(np.degrees(np.arctan2(axes[1, 0], axes[0, 0]))),
-    }
+    return Ellipse(centre, width, height, angle=np.degrees(np.arctan2(axes[1, 0], axes[0, 0])), fill=False, **style)
 
 
 def laid_on_the_map(scene: Scene, pose: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Places `(n, 2)` of the observations as seen from a pose, and their covariances `(n, 2, 2)`, map frame."""
+    """Return places `(n, 2)` of the observations as seen from a pose, and their covariances `(n, 2, 2)`, map frame."""
     places, _, spread = seen_from(np.array(pose, dtype=np.float64)[None], scene.places[None], scene.covariances[None])
     return places[0], NOISE_FACTOR**2 * spread[0] + MAP_SIGMA**2 * np.eye(2)
 
 
-def matches_axes(
-    axes: Axes,
-    title: str,
-    seen: tuple[MatchingScene, Scene],
-    pose: Sequence[float],
-    pairs: Sequence[tuple[int, int]],
-    bold: Sequence[int] = (),
-) -> None:
-    """The map, the observations as a pose lays them on it with their ellipses, and a line from each to its landmark.
+def draw_matches(axes: Axes, title: str, scene: MatchingScene, pose: Sequence, pairs: Sequence, bold: Sequence = ()):
+    """Draw the map, the observations as a pose lays them on it, and a line from each to its landmark.
 
     Green: the right landmark; vermilion and dashed: a wrong one. bold: observations that the pose was made of.
     """
-    scene, arrays = seen
-    map_axes(axes, arrays.semantic_map, title)
-    places, spread = laid_on_the_map(arrays, pose)
+    map_axes(axes, room_map(), title)
+    places, spread = laid_on_the_map(scene_of(scene.observations, room_map()), pose)
     for i, j in pairs:
-        right = scene.true_landmarks[i] == j
-        ends = np.stack([places[i], arrays.semantic_map.positions[j]])
-        colour, style = (figures.GREEN, "-") if right else (figures.VERMILION, "--")
-        axes.plot(*ends.T, style, color=colour, linewidth=1.8, zorder=4)
+        colour, style = (figures.GREEN, "-") if scene.true_landmarks[i] == j else (figures.VERMILION, "--")
+        axes.plot(*np.stack([places[i], room_map().positions[j]]).T, style, color=colour, linewidth=1.8, zorder=4)
     for i, (place, covariance) in enumerate(zip(places, spread, strict=True)):
         colour = class_style(scene.observations[i].label)[0]
-        axes.add_patch(
-            Ellipse(**ellipse_of(place, covariance), fill=False, edgecolor=colour, linewidth=3.2 if i in bold else 1.1)
-        )
+        axes.add_patch(ellipse(place, covariance, SIGMAS, edgecolor=colour, linewidth=3.2 if i in bold else 1.1))
         axes.plot(*place, "x", color=colour, markersize=7, markeredgewidth=1.7, zorder=5)
     draw_true_pose(axes, scene.pose)
     draw_pose(axes, *pose, figures.BLACK)
-    axes.set(**_SHOWN)
+    axes.set(xlim=(-1.9, 6.4), ylim=(-1.9, 6.5))  # beyond the walls, for what a wrong pose lays there
 
 
 def draw_true_pose(axes: Axes, pose: Sequence[float]) -> None:
-    """A ring, so that a pose that is right is seen inside it, and a thin line ahead."""
+    """Draw a ring, so that a pose that is right is seen inside it, and a thin line ahead."""
     x, y, theta = pose
-    axes.plot(x, y, "o", mfc="none", mec=figures.BLACK, markersize=14, markeredgewidth=1.5, zorder=5)
+    axes.plot(x, y, **(RING | {"markersize": 14}), markeredgewidth=1.5, zorder=5)
     axes.plot([x, x + 0.7 * np.cos(theta)], [y, y + 0.7 * np.sin(theta)], color="0.4", linewidth=1.0, zorder=4)
 
 
-def _name_lines(figure: Figure, axes: Axes, extra: Sequence[tuple] = (), columns: int = 4) -> None:
-    """Legend below: what lines, crosses and dots mean. extra: (marker or line, colour, name)."""
-    entries = [
-        ("-", figures.GREEN, "taken for the right landmark"),
-        ("--", figures.VERMILION, "for a wrong one"),
-        ("x", "0.3", f"object as seen from the pose, {SIGMAS:.0f}-sigma ellipse"),
-        ("ring", figures.BLACK, "true pose"),
-        ("o", figures.BLACK, "pose tried"),
-        *extra,
-    ]
-    for style, colour, name in entries:
-        look = {"x": {"marker": "x"}, "o": {"marker": "o"}, "ring": {"marker": "o", "mfc": "none", "markersize": 11}}
-        look = {"linestyle": "none", **look[style]} if style in look else {"linestyle": style}
-        axes.plot([], [], color=colour, label=name, **look)
+def legend_below(figure: Figure, axes: Axes, entries: dict[str, dict], columns: int = 9) -> None:
+    """Name below the figure what is drawn on its axes, and `entries`: name -> style."""
+    for name, style in entries.items():
+        axes.plot([], [], **({"linestyle": "none"} | style), label=name)
     handles, labels = axes.get_legend_handles_labels()
+    columns = min(columns, len(labels))
     figure.legend(handles, labels, loc="outside lower center", ncols=columns, fontsize=8, frameon=False)
 
 
-def two_ways_figure(
-    seen: tuple[MatchingScene, Scene],
-    by_colour: tuple[Sequence[float], Sequence[tuple[int, int]]],
-    by_two: tuple[Sequence[float], Sequence[tuple[int, int]], Sequence[int]],
-) -> Figure:
-    """Left: matched by class and colour, then fitted. Right: two matches make a pose, and the others follow."""
-    figure, (left, right) = figures.new_figure(1, 2, size=(10.0, 5.4))
-    matches_axes(left, "By class and colour first, then the pose", seen, *by_colour)
-    matches_axes(right, "Two matches (thick) make a pose: see the others", seen, *by_two)
-    _name_lines(figure, right)
-    figure.get_layout_engine().set(h_pad=0.1)  # else the titles touch the edge
-    return figure
+MATCHES = {
+    "taken for the right landmark": {"linestyle": "-", "color": figures.GREEN},
+    "for a wrong one": {"linestyle": "--", "color": figures.VERMILION},
+    f"object as seen from the pose, {SIGMAS:.0f}-sigma ellipse": {"marker": "x", "color": "0.3"},
+    "true pose": RING,
+    "pose tried": {"marker": "o", "color": figures.BLACK},
+}
 
 
-def matches_figure(seen: tuple[MatchingScene, Scene], found: dict[str, PoseHypothesis]) -> Figure:
-    """Poses of one scene side by side, title -> pose, each with its matches and every object's ellipse."""
+def side_by_side(scene: MatchingScene, found: dict[str, tuple], alt: str) -> Figure:
+    """Draw two poses of one scene. found: title -> pose, pairs, and perhaps the observations that it was made of."""
     figure, axes = figures.new_figure(1, len(found), size=(10.0, 5.4))
-    for one, (title, hypothesis) in zip(axes, found.items(), strict=True):
-        matches_axes(one, title, seen, hypothesis.pose, hypothesis.pairs)
-    _name_lines(figure, axes[-1])
-    figure.get_layout_engine().set(h_pad=0.1)
-    return figure
+    for one, (title, what) in zip(axes, found.items(), strict=True):
+        draw_matches(one, title, scene, *what)
+    legend_below(figure, axes[-1], MATCHES, 4)
+    figure.get_layout_engine().set(h_pad=0.1)  # else the titles touch the edge
+    return described(figure, alt)
 
 
-def hypotheses_figure(semantic_map: SemanticMap, poses: np.ndarray, true_pose: Sequence[float]) -> Figure:
-    """Every pose of two matches as an arrow on the map; most are nowhere, and some are together."""
+def two_ways_figure(scene: MatchingScene, by_colour: tuple, by_two: tuple) -> Figure:
+    """Two plans of the room. Left: matched by colour, each sofa is taken for another one and the pose is beside the
+    true one. Right: from the pose of two right matches every other object lies near its own landmark.
+    """
+    found = {
+        "By class and colour first, then the pose": by_colour,
+        "Two matches (thick) make a pose: see the others": by_two,
+    }
+    return side_by_side(scene, found, two_ways_figure.__doc__)
+
+
+def best_two_figure(scene: MatchingScene, best: PoseHypothesis, second: PoseHypothesis) -> Figure:
+    """Left, the best pose: every object lies within its ellipse near its landmark, ellipses point at the robot. Right,
+    the runner-up, a metre and more away: half of the objects have no landmark near them.
+    """
+    found = {"The best pose": (best.pose, best.pairs), "The runner-up": (second.pose, second.pairs)}
+    return side_by_side(scene, found, best_two_figure.__doc__)
+
+
+def hypotheses_figure(poses: np.ndarray, true_pose: Sequence[float]) -> Figure:
+    """The room from above with more than two hundred small arrows scattered in and around it; a dense bundle of them
+    lies at the true pose.
+    """
     figure, axes = figures.new_figure(size=(7.4, 5.6))
-    map_axes(axes, semantic_map, f"The poses of {len(poses)} pairs of matches")
+    map_axes(axes, room_map(), f"The poses of {len(poses)} pairs of matches")
     arrows = (*poses[:, :2].T, np.cos(poses[:, 2]), np.sin(poses[:, 2]))
     axes.quiver(*arrows, angles="xy", scale_units="xy", scale=2.2, width=0.004, color=figures.BLUE, alpha=0.7, zorder=3)
     axes.plot([], [], marker=">", linestyle="none", color=figures.BLUE, label="pose of two matches")
-    axes.set(xlim=(-3.2, 8.6), ylim=(-3.2, 8.2))
     draw_true_pose(axes, true_pose)
-    axes.plot([], [], "o", mfc="none", mec=figures.BLACK, markersize=11, label="true pose")
+    axes.plot([], [], linestyle="none", **RING, label="true pose")
+    axes.set(xlim=(-3.2, 8.6), ylim=(-3.2, 8.2))
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
-    return figure
+    return described(figure, hypotheses_figure.__doc__)
 
 
-def risk_figure(curves: dict[str, dict[str, list[float]]], dots: dict[str, tuple[float, float]]) -> Figure:
-    """Share of the answers that are wrong over the share answered, and over the threshold; a line a name.
+def at_threshold(curve: dict[str, list[float]], threshold: float = MIN_CONFIDENCE) -> tuple[float, float]:
+    """Return coverage and risk, percent, of a `risk_coverage` curve at a threshold; (0, 0) if nothing is that sure."""
+    found = [(0.0, 0.0), *zip(curve["coverage_percent"], curve["risk_percent"], strict=True)]
+    return found[sum(value >= threshold for value in curve["threshold"])]
 
-    curves: of `risk_coverage`. dots: coverage and risk of each at the library's threshold, percent.
+
+def risk_figure(curves: dict[str, dict[str, list[float]]]) -> Figure:
+    """Left, two curves of wrong answers over answered poses, nearly the same: 0 until almost half are answered, then
+    rising to 50 percent. Right, over the threshold: with the gap alone the risk is 20 percent and more at most
+    thresholds, with everything it is 0 above 0.5.
     """
     figure, (over_coverage, over_threshold) = figures.new_figure(1, 2, size=(10.0, 3.9))
     for index, (name, curve) in enumerate(curves.items()):
         line = figures.line_style(index) | {"marker": ""}
         dot = figures.line_style(index) | {"linestyle": "none", "markersize": 9}
-        risk = curve["risk_percent"]
-        over_coverage.step(curve["coverage_percent"], risk, where="post", label=name, **line)
-        over_coverage.plot(*dots[name], **dot, label=f"{name}, at {MIN_CONFIDENCE:g}")
-        over_threshold.step(curve["threshold"], risk, where="pre", label=name, **line)
-        over_threshold.plot(MIN_CONFIDENCE, dots[name][1], **dot)
-    for axes, title in ((over_coverage, "Risk over coverage"), (over_threshold, "Risk over the threshold")):
-        axes.set(title=title, ylabel="wrong, of the answers [%]", ylim=(-2, 60))
-    over_coverage.set(xlabel="poses answered [%]", xlim=(0, 101))
-    over_threshold.set(xlabel="threshold on the confidence [-]", xlim=(0, 1.01))
+        coverage, risk = at_threshold(curve)
+        over_coverage.step(curve["coverage_percent"], curve["risk_percent"], where="post", label=name, **line)
+        over_coverage.plot(coverage, risk, **dot, label=f"{name}, at {MIN_CONFIDENCE:g}")
+        over_threshold.step(curve["threshold"], curve["risk_percent"], where="pre", label=name, **line)
+        over_threshold.plot(MIN_CONFIDENCE, risk, **dot)
+    y = {"ylabel": "wrong, of the answers [%]", "ylim": (-2, 60)}
+    over_coverage.set(title="Risk over coverage", xlabel="poses answered [%]", xlim=(0, 101), **y)
+    over_threshold.set(title="Risk over the threshold", xlabel="threshold on the confidence [-]", xlim=(0, 1.01), **y)
     over_coverage.legend(loc="upper left", fontsize=8)
-    return figure
+    return described(figure, risk_figure.__doc__)
 
 
-def ambiguities_figure(
-    semantic_maps: Sequence[SemanticMap], found: Sequence[AmbiguityMap], titles: list[str]
-) -> Figure:
-    """Ambiguity maps side by side: dark where the right pose is not sure, dashed lines between objects confused."""
+def ambiguities(rooms: Sequence[SemanticMap], found: Sequence[AmbiguityMap], titles: Sequence[str], alt: str) -> Figure:
+    """Draw ambiguity maps: dark where the right pose is not sure, dashed lines between objects confused."""
     figure, axes = figures.new_figure(1, len(found), size=(10.4, 4.7))
-    for one, semantic_map, ambiguity, title in zip(axes, semantic_maps, found, titles, strict=True):
+    for one, semantic_map, ambiguity, title in zip(axes, rooms, found, titles, strict=True):
         squares = draw_ambiguity(one, semantic_map, ambiguity, title)
     figure.colorbar(squares, ax=axes, label="doubt about the right pose [-], 0: sure", shrink=0.8)
-    handles, labels = axes[-1].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=8, frameon=False)
-    return figure
+    legend_below(figure, axes[-1], {})
+    return described(figure, alt)
 
 
-def two_places_figure(
-    semantic_maps: Sequence[SemanticMap],
-    beliefs: Sequence[Sequence[tuple[Pose2D, float]]],
-    true_poses: np.ndarray,
-    titles: Sequence[str],
-) -> Figure:
-    """What is believed after each view: every pose that has a share, written beside it, and the true one."""
-    figure, axes = figures.new_figure(1, len(beliefs), size=(10.4, 4.1))
-    for one, semantic_map, belief, truth, title in zip(axes, semantic_maps, beliefs, true_poses, titles, strict=True):
+def matchers_figure(found: Sequence[AmbiguityMap]) -> Figure:
+    """Two plans of the room in squares. For the greedy matcher most squares are dark, and the sofas are joined by thick
+    dashed lines; for the consistent matcher nearly all squares are light.
+    """
+    return ambiguities([room_map()] * 2, found, ["Greedy", "Consistent"], matchers_figure.__doc__)
+
+
+def halls_figure(rooms: Sequence[SemanticMap], found: Sequence[AmbiguityMap]) -> Figure:
+    """Two plans in squares: without the plant all squares are half dark and equal objects are joined by dashed lines;
+    with it they are light, and the lines are faint.
+    """
+    return ambiguities(rooms, found, ["Two equal ends", "The same with a plant"], halls_figure.__doc__)
+
+
+def beliefs_figure(semantic_map: SemanticMap, beliefs: Sequence[Sequence[tuple]], true_poses: np.ndarray) -> Figure:
+    """Three plans of the symmetric room with a plant. After the first two views two poses, half a turn apart, share the
+    belief; after the third, which shows the plant, only the true one is left.
+    """
+    figure, axes = figures.new_figure(1, 3, size=(10.4, 4.1))
+    titles = ("After the first view", "the second", "the third")
+    for one, belief, truth, title in zip(axes, beliefs, true_poses, titles, strict=True):
         map_axes(one, semantic_map, title)
         draw_true_pose(one, truth)
         for pose, share in belief:
             if share > 0.01:
                 draw_pose(one, *pose, figures.BLACK)
                 one.annotate(f"{share:.0%}", pose[:2], (10, -13), textcoords="offset points", fontsize=10)
-    axes[-1].plot([], [], "o", color=figures.BLACK, label="pose believed, and its share")
-    axes[-1].plot([], [], "o", mfc="none", mec=figures.BLACK, markersize=11, label="true pose")
-    handles, labels = axes[-1].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=8, frameon=False)
-    return figure
+    believed = {"marker": "o", "color": figures.BLACK}
+    legend_below(figure, axes[-1], {"pose believed, and its share": believed, "true pose": RING})
+    return described(figure, beliefs_figure.__doc__)
 
 
-def few_seen_figure(seen: tuple[MatchingScene, Scene], pose: Sequence[float], covariance: np.ndarray, pairs) -> Figure:
-    """Few objects, all matched rightly; the pose, and the ellipse in which its covariance expects the true one."""
+def few_seen_figure(scene: MatchingScene, found: PoseHypothesis) -> Figure:
+    """Four objects with lines to the right landmarks; the pose lies a quarter of a metre from the true one, which is
+    inside the three-sigma ellipse of the pose.
+    """
     figure, axes = figures.new_figure(size=(7.4, 6.4))
-    matches_axes(axes, "Four objects, four right matches", seen, pose, pairs)
-    axes.add_patch(
-        Ellipse(**ellipse_of(pose[:2], covariance[:2, :2], POSE_SIGMAS), fill=False, edgecolor=figures.BLACK, lw=2.0)
-    )
-    _name_lines(figure, axes, [("-", figures.BLACK, f"{POSE_SIGMAS:.0f}-sigma ellipse of the pose")], 3)
-    return figure
+    draw_matches(axes, "Four objects, four right matches", scene, found.pose, found.pairs)
+    axes.add_patch(ellipse(found.pose[:2], found.covariance[:2, :2], 3.0, edgecolor=figures.BLACK, lw=2.0))
+    of_pose = {"3-sigma ellipse of the pose": {"linestyle": "-", "color": figures.BLACK}}
+    legend_below(figure, axes, MATCHES | of_pose, 3)
+    return described(figure, few_seen_figure.__doc__)

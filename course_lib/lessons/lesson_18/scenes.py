@@ -9,80 +9,78 @@ from course_lib.beyond.look_alikes.hypotheses import MAP_SIGMA
 from course_lib.beyond.several_views import Motion
 from course_lib.experiments.ambiguity import stereo_covariance
 from course_lib.experiments.look_alikes import measured_motion
-from course_lib.lessons.kit.room_observations import MatchingScene, in_body_frame
+from course_lib.lessons.kit.room_observations import MatchingScene, in_body_frame, room_scenes
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 
-PAIR = "08_a"
-"""The pair of photographs of the lesson: the assignment by colour takes each sofa for another one (chosen for that)."""
-FEW_SEEN = ("07_b", (2, 5, 7, 10))
-"""A pair of photographs and four of its observations: all are matched rightly, and the place is off by more than in any
-other of 200 such draws whose pose was given out (chosen for that)."""
-_BLUE, _RED = (240.0, 60.0), (0.0, 60.0)
+# Chosen pairs of photographs: the assignment by colour takes each sofa for another one; and four observations that are
+# all matched rightly, with a place that is off by more than in any other of 200 such draws whose pose was given out.
+PAIR, FEW_SEEN = "08_a", ("07_b", (2, 5, 7, 10))
+# The same after half a turn: three equal sofas, two equal chairs. And with one thing that is at one of its ends only.
 SYMMETRIC_ROOM = SemanticMap(
-    [
-        Landmark("sofa", 2.0, 1.0, *_BLUE),
-        Landmark("sofa", -2.0, -1.0, *_BLUE),
-        Landmark("sofa", 0.0, 0.0, *_BLUE),
-        Landmark("chair", 1.0, -2.0, *_RED),
-        Landmark("chair", -1.0, 2.0, *_RED),
-    ],
+    [*(Landmark("sofa", x, y, 240.0, 60.0) for x, y in ((2.0, 1.0), (-2.0, -1.0), (0.0, 0.0))),
+     *(Landmark("chair", x, y, 0.0, 60.0) for x, y in ((1.0, -2.0), (-1.0, 2.0)))],
     walls=[[-3, -3], [3, -3], [3, 3], [-3, 3]],
-)
-"""The same after half a turn: three equal sofas, two equal chairs."""
+)  # fmt: skip
 PLANT = Landmark("potted plant", -1.5, -2.0, 120.0, 50.0)
 ROOM_WITH_PLANT = SemanticMap([*SYMMETRIC_ROOM.landmarks, PLANT], SYMMETRIC_ROOM.walls)
-"""The same room, and one thing that is at one of its ends only."""
 
 
 def thinned(scene: MatchingScene, kept: np.ndarray) -> MatchingScene:
-    """The scene with these of its observations alone: indices, or a mask."""
-    indices = np.arange(len(scene.observations))[kept]
-    seen = tuple(scene.observations[i] for i in indices)
-    return MatchingScene(seen, tuple(scene.true_landmarks[i] for i in indices), scene.pose)
+    """Return the scene with these of its observations alone (indices)."""
+    observations, landmarks = (tuple(values[k] for k in kept) for values in scene[:2])
+    return MatchingScene(observations, landmarks, scene.pose)
 
 
 def half_seen(scene: MatchingScene, rng: np.random.Generator) -> MatchingScene:
-    """The scene with every observation left out with a probability of one half."""
-    return thinned(scene, rng.random(len(scene.observations)) < 0.5)
+    """Return the scene with every observation left out with a probability of one half."""
+    return thinned(scene, np.flatnonzero(rng.random(len(scene.observations)) < 0.5))
+
+
+def drawn_scenes(draws: int, n_seen: int | None = None) -> dict[tuple[str, int], MatchingScene]:
+    """Return every pair of photographs `draws` times, half seen, or with `n_seen` of its objects drawn at random."""
+    rng, found = np.random.default_rng(18), {}
+    for name, scene in room_scenes().items():
+        for k in range(draws):
+            few = n_seen and thinned(scene, np.sort(rng.permutation(len(scene.observations))[:n_seen]))
+            found[name, k] = few or half_seen(scene, rng)
+    return found
+
+
+def moved_map(semantic_map: SemanticMap, positions: np.ndarray, walls: np.ndarray) -> SemanticMap:
+    pairs = zip(semantic_map.landmarks, positions.tolist(), strict=True)
+    return SemanticMap([replace(one, x=x, y=y) for one, (x, y) in pairs], walls)
 
 
 def mirrored(semantic_map: SemanticMap) -> SemanticMap:
-    """The map in a mirror that stands across x: no distance between two objects changes, and no pose fits."""
-    low, high = semantic_map.walls[:, 0].min(), semantic_map.walls[:, 0].max()
-    landmarks = [replace(one, x=low + high - one.x) for one in semantic_map.landmarks]
-    return SemanticMap(landmarks, np.column_stack([low + high - semantic_map.walls[:, 0], semantic_map.walls[:, 1]]))
+    """Return the map in a mirror that stands across x: no distance between two objects changes, and no pose fits."""
+    shift, flip = [semantic_map.walls[:, 0].min() + semantic_map.walls[:, 0].max(), 0], [-1, 1]
+    return moved_map(semantic_map, semantic_map.positions * flip + shift, semantic_map.walls * flip + shift)
 
 
-def surveyed(semantic_map: SemanticMap, rng: np.random.Generator) -> SemanticMap:
-    """The map as a tape measure gives it, `MAP_SIGMA` off in x and y: no room is the same after half a turn exactly."""
-    moved = semantic_map.positions + rng.normal(0.0, MAP_SIGMA, (len(semantic_map), 2))
-    landmarks = [
-        replace(one, x=float(x), y=float(y)) for one, (x, y) in zip(semantic_map.landmarks, moved, strict=True)
-    ]
-    return SemanticMap(landmarks, semantic_map.walls)
+def surveyed(semantic_map: SemanticMap) -> SemanticMap:
+    """Return the map as a tape measure gives it: no room is the same after half a turn exactly."""
+    noise = np.random.default_rng(18).normal(0.0, MAP_SIGMA, (len(semantic_map), 2))
+    return moved_map(semantic_map, semantic_map.positions + noise, semantic_map.walls)
 
 
-def exact_view(semantic_map: SemanticMap, pose: np.ndarray, which: list[int]) -> list[Observation]:
-    """These landmarks as a rig at `pose` (x, y, theta) would measure them, without noise: what is left is the room."""
-    landmarks = [semantic_map.landmarks[j] for j in which]
-    places = in_body_frame(semantic_map.positions[which], pose)
+def exact_view(semantic_map: SemanticMap, pose: np.ndarray, n_seen: int) -> list[Observation]:
+    """Return the first landmarks as a rig at `pose` (x, y, theta) would measure them, without noise."""
+    places = in_body_frame(semantic_map.positions, pose)[:n_seen]
     return [
-        Observation(one.label, float(x), float(y), one.hue, one.saturation, stereo_covariance(np.array([x, y])))
-        for one, (x, y) in zip(landmarks, places, strict=True)
+        Observation(one.label, *place.tolist(), one.hue, one.saturation, stereo_covariance(place))
+        for one, place in zip(semantic_map.landmarks, places, strict=False)
     ]
 
 
 def walk_past_the_plant(start: np.ndarray) -> tuple[np.ndarray, list[list[Observation]], list[Motion | None]]:
-    """Poses `(3, 3)`, what is seen from each in `ROOM_WITH_PLANT`, and the odometry before each (None: the first).
+    """Return poses `(3, 3)`, what is seen from each in `ROOM_WITH_PLANT`, and the odometry before each (first: None).
 
     0.8 m ahead, then a quarter turn on the spot. The plant is hidden in the first two views.
     """
     x, y, theta = start
     ahead = (x + 0.8 * np.cos(theta), y + 0.8 * np.sin(theta))
     poses = np.array([start, [*ahead, theta], [*ahead, theta + np.pi / 2]])
-    everything = list(range(len(ROOM_WITH_PLANT)))
-    shown = [everything[:-1], everything[:-1], everything]
-    views = [exact_view(ROOM_WITH_PLANT, pose, which) for pose, which in zip(poses, shown, strict=True)]
+    views = [exact_view(ROOM_WITH_PLANT, pose, n_seen) for pose, n_seen in zip(poses, (5, 5, 6), strict=True)]
     rng = np.random.default_rng(18)
     return poses, views, [None, *(measured_motion(a, b, rng) for a, b in pairwise(poses))]

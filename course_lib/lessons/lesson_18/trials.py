@@ -1,113 +1,100 @@
 """How the matchers do on the room's 20 pairs of photographs when not everything is seen, and on a map that is wrong."""
 
-from collections.abc import Sequence
+from collections.abc import Callable
 
 import numpy as np
 
-from course_lib.beyond.look_alikes.confidence import MIN_CONFIDENCE
-from course_lib.beyond.look_alikes.consistent import associate_consistent
+from course_lib.beyond.look_alikes.consistent import assign, associate_consistent, match_costs
 from course_lib.beyond.look_alikes.evidence import Evidence
-from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
+from course_lib.beyond.look_alikes.hypotheses import PairPoses, fit_poses, pair_poses, scene_of
+from course_lib.beyond.look_alikes.matchers import associate_hungarian
 from course_lib.beyond.several_views import SemanticTracker
-from course_lib.experiments.look_alikes import (
-    Answer,
-    is_right,
-    judged,
-    measured_motion,
-    pose_errors,
-)
+from course_lib.experiments.look_alikes import KINDS, NOWHERE, Answer, judged, measured_motion
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.lessons.kit.room_observations import MatchingScene, room_scenes
 from course_lib.lessons.kit.room_photographs import room_map
-from course_lib.lessons.lesson_18.scenes import half_seen, mirrored, thinned
+from course_lib.lessons.lesson_18.scenes import half_seen
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-
-NOWHERE = (np.inf, np.inf, 0.0)  # the true pose on a map of another room
-GAP_ALONE = Evidence(absolute=False)
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, fit_rigid_2d
 
 
-def half_seen_scenes(draws: int, rng: np.random.Generator) -> list[tuple[str, MatchingScene]]:
-    """Every pair of photographs `draws` times, each time with half of its objects left out at random."""
-    return [(name, half_seen(scene, rng)) for name, scene in room_scenes().items() for _ in range(draws)]
+def localizer_of(association: Callable, semantic_map=None) -> SemanticLocalizer:
+    semantic_map = semantic_map or room_map()
+    return SemanticLocalizer(StereoRig(0.3), semantic_map, association=association, reject_implausible=False)
 
 
-def answers_of_matchers(scenes: list[tuple[str, MatchingScene]]) -> list[Answer]:
-    """What each matcher answers to each scene, judged: 0.5 m and 10 degrees."""
-    localizers = {
-        name: SemanticLocalizer(StereoRig(0.3), room_map(), association=matcher, reject_implausible=False)
-        for name, matcher in ASSOCIATIONS.items()
-    }
-    answers = []
-    for name, scene in progress(scenes, "half-seen views"):
-        for matcher, localizer in localizers.items():
-            found = localizer.localize_observations(scene.observations)
-            best = found.alternatives[0].pose if found.alternatives else found.pose
-            confidence = float(found.pose is not None) if found.confidence is None else found.confidence
-            right = all(scene.true_landmarks[i] == j for i, j in found.used_pairs)
-            answers.append(judged((0, 1, name), matcher, found.pose, best, confidence, scene.pose, right))
+def matched_by_colour(scene: MatchingScene) -> tuple[Pose2D, tuple]:
+    """Return the pose after the assignment of least cost on class and colour, and its pairs (observation, landmark)."""
+    found = localizer_of(associate_hungarian).localize_observations(scene.observations)
+    return found.pose, found.used_pairs
+
+
+def matched_by_two(scene: MatchingScene, landmarks: tuple[int, int]) -> tuple[Pose2D, tuple, np.ndarray]:
+    """Return the pose of the right matches of two landmarks, the pairs that it then finds, and the two observations."""
+    arrays = scene_of(scene.observations, room_map())
+    two = pair_poses(arrays)
+    k = np.flatnonzero(both_right(two, scene) & (np.sort(two.landmarks) == landmarks).all(axis=1))[-1]
+    cost = match_costs(arrays, two.poses[k : k + 1], two.covariances[k : k + 1], Evidence())[0][0]
+    return Pose2D(*two.poses[k]), assign(cost), two.observations[k]
+
+
+def both_right(two: PairPoses, scene: MatchingScene) -> np.ndarray:
+    """Return whether both matches of every pair are right: `(h,)` bool."""
+    return (np.array(scene.true_landmarks)[two.observations] == two.landmarks).all(axis=1)
+
+
+def fit_errors() -> dict[str, np.ndarray]:
+    """Return name of a fit -> distances `(20,)`, metres, from the true place; both fits get the true pairs.
+
+    "plain": `fit_rigid_2d`, the paper's, every error counted alike. "weighed": `fit_poses`, by the stereo covariance.
+    """
+    found, true = [], np.array([scene.pose for scene in room_scenes().values()])
+    for scene in room_scenes().values():
+        arrays, targets = scene_of(scene.observations, room_map()), room_map().positions[list(scene.true_landmarks)]
+        plain = np.array(fit_rigid_2d(arrays.places, targets))
+        found.append(
+            [plain, fit_poses(plain[None], arrays.places[None], targets[None], arrays.covariances[None])[0][0]]
+        )
+    off = np.hypot(*(np.array(found) - true[:, None])[..., :2].T)
+    return dict(zip(("plain", "weighed"), off, strict=True))
+
+
+def answers_of(scenes: dict, association: Callable = associate_consistent, semantic_map=None) -> list[Answer]:
+    """Return what a matcher answers to each scene, judged: 0.5 m and 10 degrees. On another map no answer is right."""
+    localizer, answers = localizer_of(association, semantic_map), []
+    for name, scene in scenes.items():
+        found = localizer.localize_observations(scene.observations)
+        best = found.alternatives[0].pose if found.alternatives else found.pose
+        confidence = float(found.pose is not None) if found.confidence is None else found.confidence
+        right = all(scene.true_landmarks[i] == j for i, j in found.used_pairs)
+        truth = scene.pose if localizer.semantic_map is room_map() else NOWHERE
+        answers.append(judged((0, 1, name), "", found.pose, best, confidence, truth, right))
     return answers
 
 
-def answers_of_confidence(scenes: list[tuple[str, MatchingScene]], evidence: Evidence, wrong_map: bool) -> list[Answer]:
-    """What the consistent matcher answers, on the room's map or on its mirror image, where no answer is right."""
-    semantic_map = mirrored(room_map()) if wrong_map else room_map()
-    answers = []
-    for name, scene in scenes:
-        found = associate_consistent(scene.observations, semantic_map, evidence=evidence)
-        best = found.hypotheses[0].pose if found.hypotheses else None
-        given = best if found.confidence >= MIN_CONFIDENCE else None
-        truth = NOWHERE if wrong_map else scene.pose
-        answers.append(judged((0, 1, name), "consistent", given, best, found.confidence, truth, None))
-    return answers
-
-
-def answers_on_both_maps(
-    scenes: list[tuple[str, MatchingScene]], kinds: dict[str, Evidence]
-) -> dict[str, tuple[list[Answer], list[Answer]]]:
-    """Name -> what the matcher with that evidence answers on the room's map, and on its mirror image."""
-    runs = [(name, wrong_map) for name in kinds for wrong_map in (False, True)]
-    found = {run: answers_of_confidence(scenes, kinds[run[0]], run[1]) for run in progress(runs, "evidence and maps")}
-    return {name: (found[name, False], found[name, True]) for name in kinds}
-
-
-def answers_of_few(n_seen: int, draws: int, rng: np.random.Generator) -> list[Answer]:
-    """What the consistent matcher answers when `n_seen` objects, drawn at random, are seen and no more."""
-    scenes = [
-        (name, thinned(scene, np.sort(rng.permutation(len(scene.observations))[:n_seen])))
-        for name, scene in room_scenes().items()
-        for _ in range(draws)
-    ]
-    return answers_of_confidence(scenes, Evidence(), False)
-
-
-def answers_of_two_views(draws: int, rng: np.random.Generator) -> list[Answer]:
-    """At every place of the room two half-seen views, the rig turned between them: after the first, after both.
+def answers_of_two_views(draws: int) -> list[Answer]:
+    """Return what is answered at every place of the room to two half-seen views, the rig turned between them.
 
     Methods "one view" and "two views, odometry"; odometry with its noise.
     """
-    scenes = room_scenes()
+    rng, scenes, answers = np.random.default_rng(18), room_scenes(), []
     places = [name[:-2] for name in scenes if name.endswith("_a")]
-    answers = []
     for place in progress([place for place in places for _ in range(draws)], "places"):
         both = [scenes[f"{place}_{turn}"] for turn in "ab"]
         tracker = SemanticTracker(room_map())
-        poses = np.array([one.pose for one in both])
         for k, method in enumerate(("one view", "two views, odometry")):
-            motion = measured_motion(poses[0], poses[1], rng) if k else None
+            motion = measured_motion(*(np.array(one.pose) for one in both), rng) if k else None
             track = tracker.step(half_seen(both[k], rng).observations, motion)
             best = track.alternatives[0][0] if track.alternatives else None
-            answers.append(judged((0, 1, place), method, track.pose, best, track.confidence, poses[k], None))
+            answers.append(judged((0, 1, place), method, track.pose, best, track.confidence, both[k].pose, None))
     return answers
 
 
-def at_threshold(curve: dict[str, list[float]], threshold: float = MIN_CONFIDENCE) -> tuple[float, float]:
-    """Coverage and risk, percent, of a `risk_coverage` curve at a threshold; (0, 0) where nothing is that sure."""
-    sure = [k for k, value in enumerate(curve["threshold"]) if value >= threshold]
-    return (curve["coverage_percent"][sure[-1]], curve["risk_percent"][sure[-1]]) if sure else (0.0, 0.0)
-
-
-def belief_at(true_pose: np.ndarray, alternatives: Sequence[tuple[Pose2D, float]]) -> float:
-    """Share of the belief of the poses that are right."""
-    return sum(share for pose, share in alternatives if is_right(pose_errors(pose, true_pose)))
+def shares_line(name: str, table: dict, width: int = 22) -> str:
+    """Return one row of a printed table: correct, wrong and unanswered in percent, each with Wilson's 95 % interval."""
+    cells = []
+    for kind in KINDS:
+        low, high = table[f"{kind}_wilson_percent"]
+        cells.append(f"{kind} {table[f'{kind}_percent']:5.1f} ({low:4.1f} to {high:5.1f})")
+    return f"{name:{width}} {', '.join(cells)} %"
