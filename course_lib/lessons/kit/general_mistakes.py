@@ -67,15 +67,16 @@ def general_mistake(exercise: Exercise, arguments: list[tuple], answers: list) -
             if all(agree(a, slip(w), exercise.tolerance) for a, w in zip(answers, wanted, strict=True)):
                 return sentence
         for sentence, function in [*argument_slips(exercise.solution, arguments[-1]), *code_slips(exercise.solution)]:
-            if all(_gives(function, g, a, exercise.tolerance) for g, a in zip(arguments, answers, strict=True)):
+            if all(gives(function, g, a, exercise.tolerance) for g, a in zip(arguments, answers, strict=True)):
                 return sentence
         return constant_difference(answers, wanted, exercise.tolerance)
 
 
-def _gives(function: Callable, given: tuple, answer: object, tolerance: float) -> bool:
+def gives(function: Callable, given: tuple, answer: object, tolerance: float) -> bool:
+    """Return whether a mistaken function gives this answer. If it cannot run on these arguments, it does not."""
     try:
         return agree(answer, function(*copy.deepcopy(given)), tolerance)
-    except Exception:  # a slip may make code that cannot run on these arguments
+    except Exception:
         return False
 
 
@@ -238,7 +239,7 @@ def constant_difference(answers: list, wanted: list, tolerance: float) -> str | 
         return None
     factor, summand = np.median(a[telling] / w[telling]), np.median(a[telling] - w[telling])
     for sentence, right in ((FACTOR, w * factor), (OFFSET, w + summand)):
-        if np.allclose(a, right, rtol=tolerance, atol=tolerance, equal_nan=True):
+        if np.any(right) and np.allclose(a, right, rtol=tolerance, atol=tolerance, equal_nan=True):
             return sentence
     return None
 

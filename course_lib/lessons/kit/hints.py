@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import copy
 import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from course_lib.lessons.kit.general_mistakes import general_mistake
+from course_lib.lessons.kit.general_mistakes import general_mistake, gives
 from course_lib.lessons.kit.values import agree, as_numbers, is_row_of, parts, shaped
 
 if TYPE_CHECKING:  # because `exercises` imports this module
@@ -43,7 +42,7 @@ def known_mistake(exercise: Exercise, arguments: list[tuple], answers: list) -> 
     pairs = list(zip(arguments, answers, strict=True))
     for mistake in exercise.known:
         for function in mistake.functions:
-            if all(agree(answer, function(*copy.deepcopy(given)), exercise.tolerance) for given, answer in pairs):
+            if all(gives(function, given, answer, exercise.tolerance) for given, answer in pairs):
                 return mistake.hint
     return None
 
