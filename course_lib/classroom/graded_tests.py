@@ -22,6 +22,7 @@ from course_lib.classroom.points import earned
 from course_lib.classroom.score_worlds import graded_project, score_points, score_sentence
 from course_lib.lessons.kit.attempt import attempt
 from course_lib.lessons.kit.exercises import Exercise, find_exercise, is_stub, right_on
+from course_lib.lessons.kit.forbidden import forbidden_module
 from course_lib.lessons.kit.general_mistakes import general_mistake
 from course_lib.lessons.kit.hints import kind_of, known_mistake
 from course_lib.lessons.kit.projects import Project, outcomes, project_names
@@ -133,6 +134,8 @@ def changed(used: tuple, given: tuple) -> str | None:
 
 def grade_score(project: Project, function: Callable) -> Grade:
     """Points and feedback of a project's function in the worlds of the secret seed."""
+    if (module := forbidden_module(function, project.forbidden)) is not None:
+        return Grade(0.0, f"not scored. Your function uses {module}, which this project asks you to write yourself.")
     found = outcomes(project, function, project.seeds)
     values = [outcome.value for outcome in found]
     failed = sum(outcome.failed for outcome in found)

@@ -8,6 +8,7 @@ import re
 import pytest
 
 from course_lib.lessons.kit.exercises import find_exercise, judge, lesson_exercises
+from course_lib.lessons.kit.forbidden import forbidden_module
 from course_lib.lessons.kit.projects import find_project, is_better, one_outcome, project_names, stored_rivals
 from course_lib.paths import REPOSITORY, project_paths
 from tests.notebooks.test_exercise_cells import SEEDS, functions_of, only, require_unsolved_stub, stub_of
@@ -63,8 +64,9 @@ def test_each_check_calls_the_stub_above_and_says_not_attempted_and_so_does_the_
     assert "".join(o.text for o in cell.outputs).startswith(f"{project.number}: not attempted")
 
 
-def test_the_model_solution_passes_every_stage(project):
-    module = model_solution(project)
+def test_the_model_solution_passes_every_stage_without_what_is_forbidden(project):
+    module, scored = model_solution(project), find_project(project.number)
+    assert forbidden_module(getattr(module, scored.function), scored.forbidden) is None
     for number in project.exercise_numbers():
         (name,) = stub_of(project, number)
         for seed in SEEDS:

@@ -30,6 +30,7 @@ from course_lib.experiments.intervals import median_interval
 from course_lib.experiments.results import write_results
 from course_lib.lessons.kit.attempt import Attempt, attempt
 from course_lib.lessons.kit.exercises import MAX_SHOWN, is_stub
+from course_lib.lessons.kit.forbidden import forbidden_module
 from course_lib.lessons.kit.hints import kind_of
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.paths import REPOSITORY, data_path
@@ -78,6 +79,8 @@ class Project:
     in a submitted file. seeds: hidden, at least six, because fewer have no interval. prepare: makes a seed's `Task`.
     measure: makes the `Result` of an answer. rivals: the methods to compare with. seconds: time limit of one call.
     many: True if a task holds the arguments of many calls, a tuple for each; its answer is the list of their results.
+    forbidden: modules that a submission may not use. rule: `rule(seed, function, answer)` raises `AnswerError` if the
+    answer came about against the rules.
     """
 
     name: str
@@ -92,6 +95,8 @@ class Project:
     rivals: tuple[Rival, ...]
     seconds: float = 120.0
     many: bool = False
+    forbidden: tuple[str, ...] = ()
+    rule: Callable[[int, Callable, object], None] | None = None
 
     @property
     def worst(self) -> float:
@@ -137,6 +142,8 @@ def score(name: str, function: Callable, seeds: Sequence[int] | None = None, riv
         print(f"{name}: give the function itself, without calling it; this is a {kind_of(function)}.")
     elif is_stub(function):
         print(f"{name}: not attempted yet. Replace the `...` of {function.__name__}, then run this cell again.")
+    elif (module := forbidden_module(function, project.forbidden)) is not None:
+        print(f"{name}: your function uses {module}, which this project asks you to write yourself.")
     elif seeds is None:
         report(project, outcomes(project, function, project.seeds), stored_rivals(project), hidden=True)
     else:
@@ -179,6 +186,8 @@ def one_outcome(project: Project, function: Callable, seed: int) -> Outcome:
         return Outcome(project.worst, f"Your function {trial.failure}", True, late, trial.printed)
     try:
         result = project.measure(task, trial.value)
+        if project.rule is not None:
+            project.rule(seed, function, trial.value)
     except AnswerError as error:
         return Outcome(project.worst, f"Your function {error}.", True, printed=trial.printed)
     if not np.isfinite(result.value):

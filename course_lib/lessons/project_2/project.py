@@ -126,4 +126,5 @@ PROJECT = Project(
     ),
     seconds=20.0,
     many=True,
+    forbidden=("course_lib.spherical_stereo", "course_lib.beyond", "course_lib.lessons"),
 )
