@@ -27,7 +27,7 @@ def test_a_track_holds_the_errors_of_its_estimates():
 
 
 def test_in_a_bare_corridor_the_error_stays_within_a_sigma_that_is_wide_along_the_axis_only():
-    errors, sigmas, statuses = slide()
+    errors, sigmas, _ = slide()
     assert np.diff(errors[:, 0])[1:] == pytest.approx(-0.1, abs=0.03)
     assert (sigmas[:, 0] > 5 * sigmas[:, 1]).all()
     assert (np.abs(errors[:, 0]) < 3 * sigmas[:, 0]).all()
