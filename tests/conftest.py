@@ -1,9 +1,6 @@
 """Fixtures of all tests."""
 
-import functools
-import hashlib
 import os
-import pickle
 import signal
 import sys
 from pathlib import Path
@@ -47,7 +44,7 @@ def pytest_collection_modifyitems(items):
         if walk or (item.path.name == "test_nbgrader.py" and item.get_closest_marker("slow")):
             item.add_marker("release")
     long = {item.path for item in items if any(item.get_closest_marker(name) for name in ("browser", "slow"))}
-    long |= {item.path for item in items if "values_once" in getattr(item, "fixturenames", ())}
+    long |= {item.path for item in items if item.path.name == "test_all_exercises.py"}
     items.sort(key=lambda item: 0 if item.path in long else 1 if item.path.suffix == ".ipynb" else 2)
 
 
@@ -70,30 +67,3 @@ def kitchen_folder():
     if not folder.is_dir():
         pytest.skip(f"the real recording is not here ({folder}); it is not part of the repository")
     return folder
-
-
-@pytest.fixture(scope="module")
-def values_once():
-    """All exercises, with references and known mistakes that compute each value once: a module judges many answers."""
-    from course_lib.lessons.kit.exercises import Exercise, lesson_exercises, lesson_numbers
-
-    def once(function, key):
-        kept = {}
-
-        @functools.wraps(function)
-        def kept_or_computed(*arguments):
-            name = hashlib.sha256(pickle.dumps(key(*arguments))).digest()
-            if name not in kept:
-                kept[name] = function(*arguments)
-            return kept[name]
-
-        return kept_or_computed
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Exercise, "draw", once(Exercise.draw, lambda self, rng: (self.number, rng.bit_generator.state)))
-        for exercise in [exercise for number in lesson_numbers() for exercise in lesson_exercises(number)]:
-            patch.setitem(vars(exercise), "reference", once(exercise.reference, lambda *given: given))
-            for mistake in exercise.mistakes:
-                patch.setitem(vars(mistake), "function", once(mistake.function, lambda *given: given))
-                patch.setitem(vars(mistake), "others", tuple(once(one, lambda *given: given) for one in mistake.others))
-        yield

@@ -20,13 +20,13 @@ from course_lib.lessons.kit.exercises import Exercise, find_exercise, right_on
     ],
 )
 def test_all_right_earns_all_half_right_earns_half(level, right, points):
-    exercise = Exercise("99.1", abs, lambda rng: (1.0,), (), level=level)
+    exercise = Exercise("99.1", abs, lambda rng: (1.0,), level)
     assert earned(exercise, right) == points
     assert points_of(exercise) == {"warm-up": 2, "core": 4, "challenge": 6}[level]
 
 
 def test_right_inputs_are_counted_by_the_function_that_fits_best():
-    either = Exercise("99.2", np.median, lambda rng: (rng.normal(size=9),), (), others=(np.mean,))
+    either = Exercise("99.2", np.median, lambda rng: (rng.normal(size=9),), others=(np.mean,))
     arguments = either.draw(np.random.default_rng(1))
     answers = [np.mean(*given) for given in arguments]
     assert right_on(either, arguments, answers) == [True] * len(arguments)

@@ -1,11 +1,9 @@
-"""Answers that students may give to lesson 19, for test_exercise_answers.py."""
+"""Right answers to lesson 19 by other ways than its solutions."""
 
 import math
 
 import numpy as np
 from scipy.stats import binomtest
-
-PI = np.pi
 
 
 def by_matrix(x, y, theta, forward, left, turned):
@@ -21,10 +19,6 @@ def by_matrix(x, y, theta, forward, left, turned):
 def by_complex_numbers(x, y, theta, forward, left, turned):
     camera = complex(x, y) + np.exp(1j * theta) * complex(forward, left)
     return [camera.real, camera.imag, np.angle(np.exp(1j * (theta + turned)))]
-
-
-def on_the_full_circle(x, y, theta, forward, left, turned):
-    return *by_matrix(x, y, theta, forward, left, turned)[:2], (theta + turned) % (2 * PI)
 
 
 def by_loops(covariance, sigma_z, sigma_tilt_deg):
@@ -46,12 +40,6 @@ def by_blocks(covariance, sigma_z, sigma_tilt_deg):
             [covariance[2:, :2], np.zeros((1, 3)), covariance[2:, 2:]],
         ]
     )
-
-
-def one_sided_corner(covariance, sigma_z, sigma_tilt_deg):
-    result = np.array(by_loops(covariance, sigma_z, sigma_tilt_deg))
-    result[5, :2] = 0
-    return result
 
 
 def low(hits, n, z=1.96):
@@ -81,13 +69,6 @@ def by_scipy(share, misses):
     return first(lambda n: lower(n) >= share, misses + 1)
 
 
-def exact_interval(share, misses):
-    def lower(n):
-        return binomtest(n - misses, n).proportion_ci(confidence_level=0.95, method="exact").low
-
-    return first(lambda n: lower(n) >= share, misses + 1)
-
-
 def derivative(theta, forward, left):
     """By differences of 19.1."""
     step, columns = 1e-6, []
@@ -112,46 +93,13 @@ def by_hand(p, theta, forward, left):
     return [[xx, xy, xt], [xy, yy, yt], [xt, yt, p[2, 2]]]
 
 
-def body_offset(p, theta, forward, left):
-    """The lever in the robot's axes, not turned onto the map's."""
-    lever = np.array([[1, 0, forward], [0, 1, left], [0, 0, 1]])
-    return lever @ p @ lever.T
-
-
-# Exercise, answer, words of the hint that must come.
-WRONG = [
-    (
-        "19.2",
-        lambda p, z, tilt: (
-            np.insert(np.insert(p, [2, 2, 2], 0, 0), [2, 2, 2], 0, 1)
-            + np.diag([0, 0, z**2, *[np.deg2rad(tilt) ** 2] * 2, 0])
-            + 1e-6 * np.eye(6)
-        ),
-        "values differ",
-    ),
-    ("19.1", lambda x, y, theta, f, left, t: (x + f, y + left, by_matrix(x, y, theta, f, left, t)[2]), "Turn them by"),
-    ("19.1", lambda x, y, theta, f, left, t: by_matrix(x, y, theta, f, -left, t), "robot's right"),
-    ("19.1", on_the_full_circle, "-pi to pi"),
-    ("19.1", lambda x, y, theta, f, left, t: by_matrix(x, y, theta, f, left, 0), "own turn is missing"),
-    ("19.1", lambda x, y, theta, f, left, t: by_matrix(x, y, theta, f, left, t)[:2], "Return 3 values"),
-    ("19.2", lambda p, z, t: by_blocks(p, z**0.5, t), "squares"),
-    ("19.2", lambda p, z, t: by_blocks(p, z, math.degrees(t)), "radians"),
-    ("19.2", one_sided_corner, "same on both sides"),
-    ("19.2", lambda p, z, t: np.array(by_loops(p, z, t))[:5, :5], "shape (6, 6)"),
-    ("19.3", lambda share, misses: first(lambda n: 1 - misses / n >= share - 1e-9, misses + 1), "lower end"),
-    ("19.3", lambda share, misses: by_bisection(share, misses) - misses, "misses included"),
-    ("19.3", lambda share, misses: by_bisection(share, 0), "no miss"),
-    ("19.3", exact_interval, "exact"),
-    ("19.4", lambda p, theta, f, left: derivative(theta, f, left).T @ p @ derivative(theta, f, left), "transposed"),
-    ("19.4", body_offset, "robot's"),
-    ("19.4", lambda p, theta, f, left: np.array(by_hand(p, 0.0, f, left)), "cos theta and sin theta"),
-]
 RIGHT = [
     ("19.1", by_matrix),
     ("19.1", by_complex_numbers),
     ("19.1", lambda *given: np.array(by_matrix(*given))),
     ("19.2", by_loops),
     ("19.2", by_blocks),
+    ("19.2", lambda p, z, t: np.array(by_loops(p, z, t), np.float32)),
     ("19.3", by_bisection),
     ("19.3", by_scipy),
     ("19.3", lambda share, misses: float(by_bisection(share, misses))),
@@ -159,5 +107,4 @@ RIGHT = [
     ("19.4", lambda p, theta, f, left: derivative(theta, f, left) @ p @ derivative(theta, f, left).T),
     ("19.4", lambda p, theta, f, left: np.einsum("ia,ab,jb", d := derivative(theta, f, left), p, d)),
     ("19.4", lambda p, theta, f, left: np.array(by_hand(p, theta, f, left), np.float32)),
-    ("19.2", lambda p, z, t: np.array(by_loops(p, z, t), np.float32)),
 ]

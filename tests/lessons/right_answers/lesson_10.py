@@ -1,0 +1,105 @@
+"""Right answers to lesson 10 by other ways than its solutions."""
+
+import numpy as np
+
+from course_lib.beyond.lost_and_found.adaptive_count import kld_count
+
+
+def kept_by(near_enough, order=lambda scores: np.argsort(-scores)):
+    def answer(states, scores, metres, radians):
+        kept = []
+        for i in order(scores):
+            if not any(near_enough(states[i], states[j], metres, radians) for j in kept):
+                kept.append(int(i))
+        return np.array(kept)
+
+    return answer
+
+
+def by_running_sum(free, cell, u):
+    chosen = np.searchsorted(np.cumsum(free.ravel()), u[:, 0] * free.sum(), side="right")
+    return [cell * (chosen % free.shape[1] + u[:, 1]), cell * (chosen // free.shape[1] + u[:, 2])]
+
+
+ENOUGH = 10**6
+
+
+def chosen_cells(free, u):
+    listed = [(r, c) for r in range(free.shape[0]) for c in range(free.shape[1]) if free[r, c]]
+    return [listed[int(a * len(listed))] for a in u[:, 0]]
+
+
+def by_loops(free, cell, u):
+    places = [(c + x, r + y) for (r, c), (_, x, y) in zip(chosen_cells(free, u), u, strict=True)]
+    return [[cell * x, cell * y] for x, y in places]
+
+
+def by_argwhere(free, cell, u):
+    corners = np.argwhere(free)[np.floor(u[:, 0] * free.sum()).astype(int)]
+    return ((corners[:, ::-1] + u[:, 1:]) * cell).astype(np.float32)
+
+
+def means(scores, share):
+    found = [scores[0]]
+    for score in scores[1:]:
+        found.append(found[-1] if np.isnan(score) else share * score + (1 - share) * found[-1])
+    return np.array(found)
+
+
+def by_ratio(scores, short, long):
+    return np.clip(1 - means(scores, short) / means(scores, long), 0, None)
+
+
+def by_list(scores, short, long):
+    return [float(max(0, (u - s) / u)) for s, u in zip(means(scores, short), means(scores, long), strict=True)]
+
+
+def by_unique(bins, least):
+    for n in range(1, len(bins) + 1):
+        if n >= kld_count(len(set(bins[:n].tolist())), least, ENOUGH):
+            return n
+    return len(bins)
+
+
+def by_while(bins, least):
+    n, seen = 0, {}
+    while n < len(bins) and n < kld_count(len(seen), least, ENOUGH):
+        seen[int(bins[n])] = True
+        n += 1
+    return np.array([n])[0]
+
+
+def near(a, b, metres, radians):
+    turn = abs(a[2] - b[2]) % (2 * np.pi)
+    return np.hypot(a[0] - b[0], a[1] - b[1]) < metres and min(turn, 2 * np.pi - turn) < radians
+
+
+def by_lists(states, scores, metres, radians):
+    kept = []
+    for i in sorted(range(len(scores)), key=lambda i: -scores[i]):
+        if all(not near(states[i], states[j], metres, radians) for j in kept):
+            kept.append(i)
+    return kept
+
+
+def by_striking_out(states, scores, metres, radians):
+    left, kept = set(range(len(scores))), []
+    while left:
+        best = max(left, key=lambda i: scores[i])
+        kept.append(best)
+        left -= {i for i in left if i == best or near(states[i], states[best], metres, radians)}
+    return np.array(kept, dtype=np.int32)
+
+
+RIGHT = [
+    ("10.1", lambda free, cell, u: np.transpose(by_running_sum(free, cell, u))),
+    ("10.1", by_loops),
+    ("10.1", by_argwhere),
+    ("10.2", by_ratio),
+    ("10.2", by_list),
+    ("10.3", by_unique),
+    ("10.3", by_while),
+    ("10.4", kept_by(near, order=lambda scores: np.argsort(scores)[::-1])),
+    ("10.4", by_lists),
+    ("10.4", by_striking_out),
+]
