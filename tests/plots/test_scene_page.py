@@ -18,11 +18,11 @@ WORDS = {"title": 'Axes & "more"', "alt": "The axes of a pose <seen> from above"
 STATE = np.array([1.0, 2.0, 3.0, 0.1, 0.2, 0.3])
 
 
-def axes_page() -> str:
+def axes_page(state=STATE, colour="#0072B2", **words) -> str:
     plotter = scenes.new_plotter(viewpoint=(4, 3, 6), focus=(1, 2, 3))
-    plotter.add_mesh(scenes.body_axes(STATE, 0.5), rgb=True)
-    plotter.add_mesh(scenes.path(np.array([[0.0, 0, 0], [1, 2, 3]])), color="#0072B2", line_width=3)
-    page = page_html(plotter, **WORDS)
+    plotter.add_mesh(scenes.body_axes(state, 0.5), rgb=True)
+    plotter.add_mesh(scenes.path(np.array([[0.0, 0, 0], [1, 2, 3]])), color=colour, line_width=3)
+    page = page_html(plotter, **(WORDS | words))
     plotter.close()
     return page
 

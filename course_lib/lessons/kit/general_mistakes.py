@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from course_lib.lessons.kit.attempt import TIME_LIMIT, attempt
 from course_lib.lessons.kit.mistakes import compiled
 from course_lib.lessons.kit.values import agree, as_numbers, is_row_of, parts
 
@@ -46,6 +47,9 @@ CLOSE = "Within 5 % everywhere, but not equal: is something simulated, rounded, 
 FACTOR = "Yours differs from the right values by one constant factor."
 OFFSET = "Yours differs from the right values by one constant summand."
 
+LIMIT = 0.2
+"""Time limit of one call of a slip [s]: a slip may make a loop endless. The right function takes milliseconds."""
+
 OF_VALUES = (
     (SIGN, np.negative),
     (DEGREES, np.rad2deg),
@@ -67,17 +71,15 @@ def general_mistake(exercise: Exercise, arguments: list[tuple], answers: list) -
             if all(agree(a, slip(w), exercise.tolerance) for a, w in zip(answers, wanted, strict=True)):
                 return sentence
         for sentence, function in [*argument_slips(exercise.solution, arguments[-1]), *code_slips(exercise.solution)]:
-            if all(gives(function, g, a, exercise.tolerance) for g, a in zip(arguments, answers, strict=True)):
+            if all(gives(function, g, a, exercise.tolerance, LIMIT) for g, a in zip(arguments, answers, strict=True)):
                 return sentence
         return constant_difference(answers, wanted, exercise.tolerance)
 
 
-def gives(function: Callable, given: tuple, answer: object, tolerance: float) -> bool:
+def gives(function: Callable, given: tuple, answer: object, tolerance: float, seconds: float = TIME_LIMIT) -> bool:
     """Return whether a mistaken function gives this answer. If it cannot run on these arguments, it does not."""
-    try:
-        return agree(answer, function(*copy.deepcopy(given)), tolerance)
-    except Exception:
-        return False
+    call = attempt(function, copy.deepcopy(given), seconds)
+    return call.failure is None and agree(answer, call.value, tolerance)
 
 
 def value_slips(wanted: list) -> Iterator[tuple[str, Callable]]:
