@@ -2,23 +2,6 @@
 
 from course_lib.lessons.kit.room_observations import room_scenes
 from course_lib.lessons.kit.room_photographs import room_map
-from course_lib.lessons.lesson_15.alternative_texts import ALT
 from course_lib.lessons.lesson_15.figures import centroids_figure, sofas_figure, terms_figure
 from course_lib.lessons.lesson_15.panel import PANELS, weights_panel
 from course_lib.lessons.lesson_15.scores import PAIR, SOFAS, hidden_score, score, two_searches
-
-__all__ = [
-    "ALT",
-    "PAIR",
-    "PANELS",
-    "SOFAS",
-    "centroids_figure",
-    "hidden_score",
-    "room_map",
-    "room_scenes",
-    "score",
-    "sofas_figure",
-    "terms_figure",
-    "two_searches",
-    "weights_panel",
-]

@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
+from course_lib.lessons.kit.display import described
 from course_lib.lessons.kit.room_observations import MatchingScene
 from course_lib.lessons.kit.room_photographs import room_map
 from course_lib.lessons.lesson_15.scores import SOFAS
@@ -27,7 +28,11 @@ def centroids_figure(scene: MatchingScene) -> Figure:
     map_axes(world, room_map(), "The map, world frame")
     _spokes(world, room_map().positions, "x_G.map")
     world.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
-    return figure
+    return described(
+        figure,
+        "Thirteen objects around the camera in its own frame, and the fourteen of the map; from each object a line to "
+        "the centroid of its side. The two stars of lines look alike, but turned.",
+    )
 
 
 def _spokes(axes, places: np.ndarray, name: str) -> None:
@@ -52,7 +57,12 @@ def terms_figure(scene: MatchingScene, terms: dict[str, np.ndarray]) -> Figure:
         a.set_xticks(range(len(columns)), columns, rotation=90, fontsize=9)
         a.set_yticks(range(len(rows)), rows, fontsize=9)
     figure.colorbar(image, ax=axes, label="penalty [-], 1 and more: yellow", shrink=0.9)
-    return figure
+    return described(
+        figure,
+        "Four heat maps, two by two: in hue and saturation the three sofas are all alike and dark; in distance bright "
+        "columns for landmarks near the centroid; in the total only blocks of like classes are dark, "
+        "the right darkest.",
+    )
 
 
 def sofas_figure(scene: MatchingScene) -> Figure:
@@ -71,7 +81,11 @@ def sofas_figure(scene: MatchingScene) -> Figure:
     axes.set_yticks([0, 1], ["observed", "map"])
     axes.set_ylabel("side [-]")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-    return figure
+    return described(
+        figure,
+        "On a line of distances to the centroid: on the map sofa 1 at 2.35, sofa 0 at 2.63, sofa 2 at 3.44 metres; "
+        "observed, sofas 0 and 1 lie nearly on one another at 2.3 metres.",
+    )
 
 
 _SHORT = {"television": "TV", "potted plant": "plant", "refrigerator": "fridge"}

@@ -1,7 +1,6 @@
 """Lesson 16, pose from points: matched points of the room, noise on points, the figures and the panel of the fit."""
 
 from course_lib.lessons.kit.room_observations import room_scenes
-from course_lib.lessons.lesson_16.alternative_texts import ALT
 from course_lib.lessons.lesson_16.figures import centred_figure, heading_figure, noise_figure
 from course_lib.lessons.lesson_16.fits import (
     LINE,
@@ -17,24 +16,3 @@ from course_lib.lessons.lesson_16.fits import (
     weighted_fits,
 )
 from course_lib.lessons.lesson_16.panel import PANELS, fit_panel
-
-__all__ = [
-    "ALT",
-    "LINE",
-    "PANELS",
-    "ROOM",
-    "SIGMA",
-    "centred_figure",
-    "expected_sigmas",
-    "fit_panel",
-    "heading_figure",
-    "landmarks_of",
-    "matched_points",
-    "mirrored_by_plain_svd",
-    "noise_figure",
-    "noisy_fits",
-    "pose_error",
-    "ring_of_landmarks",
-    "room_scenes",
-    "weighted_fits",
-]
