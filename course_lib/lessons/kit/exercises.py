@@ -19,8 +19,7 @@ import numpy as np
 
 from course_lib.lessons.kit.attempt import TIME_LIMIT, attempt
 from course_lib.lessons.kit.hints import MISSING_RETURN, hint, kind_of, known_mistake
-from course_lib.lessons.kit.mistakes import Mistake as _Mistake
-from course_lib.lessons.kit.mistakes import read_mistakes
+from course_lib.lessons.kit.mistakes import Mistake, read_mistakes
 from course_lib.lessons.kit.progress_page import update_page
 from course_lib.lessons.kit.student_record import record_check, record_folder
 from course_lib.lessons.kit.values import agree, agree_all
@@ -31,10 +30,6 @@ MAX_SHOWN = 1000
 """Upper limit on the characters that we show of a function's printed text. Only the first call's text is shown."""
 
 Level = Literal["warm-up", "core", "challenge"]
-
-
-def Mistake(function, hint, others=()):
-    return _Mistake((function, *others), hint)
 
 
 @dataclass(frozen=True)
@@ -72,11 +67,9 @@ class Exercise:
         return [make.__name__.strip("_").replace("_", " ") for make in self.cases]
 
     @functools.cached_property
-    def known(self) -> tuple[_Mistake, ...]:
+    def known(self) -> tuple[Mistake, ...]:
         """Return the exercise's own mistakes: its edits, then its functions."""
-        if not isinstance(self.mistakes, str):
-            return self.mistakes
-        others = tuple(_Mistake((function,), hint) for function, hint in self.functions.items())
+        others = tuple(Mistake((function,), hint) for function, hint in self.functions.items())
         return read_mistakes(self.solution, self.mistakes) + others
 
 

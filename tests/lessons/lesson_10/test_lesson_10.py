@@ -181,4 +181,4 @@ STATES = np.array([[0, 0, 3.1], [0.1, 0, -3.1], [0, 0, 0], [5, 0, 3.1]])
     ],
 )
 def test_the_examples_of_the_tasks_are_right(number, given, wanted):
-    assert find_exercise(number).reference(*given) == pytest.approx(np.array(wanted), abs=1e-4)
+    assert find_exercise(number).solution(*given) == pytest.approx(np.array(wanted), abs=1e-4)

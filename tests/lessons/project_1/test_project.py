@@ -5,7 +5,7 @@ import pytest
 
 from course_lib.lessons.kit.projects import AnswerError, one_outcome
 from course_lib.lessons.project_1 import recordings
-from course_lib.lessons.project_1.project import PROJECT, measure, prepare
+from course_lib.lessons.project_1.project import PROJECT, measure, no_later_frames, prepare
 from course_lib.lessons.project_1.recordings import FRAMES, PARTICLES, BudgetError, CountedRenderer
 
 SEED = 10_001
@@ -64,7 +64,7 @@ def test_the_value_is_the_median_horizontal_error_in_millimetres(task):
     found[:5, 0] += 2.0
     result = measure(task, found.tolist())
     assert result.value == pytest.approx(50.0)
-    assert "worst frame 2.0" in result.remark
+    assert "worst frame 2030" in result.remark
 
 
 @pytest.mark.parametrize(
@@ -90,3 +90,17 @@ def test_a_submission_beyond_the_budget_is_a_verdict(task):
     outcome = one_outcome(PROJECT, greedy, SEED)
     assert outcome.failed
     assert "the budget of 1600 renders is spent" in outcome.remark
+
+
+def still(renderer, camera, frames, start, n_particles, rng):
+    return np.tile(start, (len(frames), 1))
+
+
+def smoothed(renderer, camera, frames, start, n_particles, rng):
+    return np.tile(start, (len(frames), 1)) + np.nanmean(frames)
+
+
+def test_estimates_that_use_later_frames_are_refused(task):
+    no_later_frames(SEED, still, still(*task.arguments))
+    with pytest.raises(AnswerError, match="when it is not given the later ones"):
+        no_later_frames(SEED, smoothed, smoothed(*task.arguments))
