@@ -189,6 +189,28 @@ def one_state_alone(rng: np.random.Generator) -> tuple:
     return np.array([[1.0, 2.0, 3.0]]), np.array([0.7]), 0.5, 0.3
 
 
+# 10.5: the two numbers of a search
+
+
+def search_numbers(bins, miss, probability):
+    """Least number of even draws, and the KLD error [nats], for a building of so many equally likely bins."""
+    from scipy.stats import norm
+
+    # The camera's bin gets none of n draws with probability (1 - 1 / bins)^n; (10.3) is solved for the error.
+    least = int(np.ceil(np.log(miss) / np.log(1 - 1 / bins)))
+    share = 2 / (9 * (bins - 1))
+    bracket = 1 - share + np.sqrt(share) * norm.ppf(probability)
+    return least, (bins - 1) / (2 * least) * bracket**3
+
+
+def buildings(rng: np.random.Generator) -> tuple:
+    return int(10 ** rng.uniform(0.7, 4)), float(10 ** rng.uniform(-3, -0.7)), float(rng.uniform(0.9, 0.999))
+
+
+def two_bins_with_a_whole_number(rng: np.random.Generator) -> tuple:
+    return 2, 0.25, 0.99
+
+
 # fmt: off
 EXERCISES = [
     Exercise("10.1", free_places, grids, "warm-up", cases=[numbers_on_the_borders], mistakes="""
@@ -299,7 +321,7 @@ EXERCISES = [
         len(seen) => max(seen) - min(seen) + 1
         You count one bin too few or too many: each counts once, the first one, too, and their numbers have gaps.
     """),
-    Exercise("10.4", distinct_places, clouds_of_states, "challenge", cases=[
+    Exercise("10.4", distinct_places, clouds_of_states, cases=[
         headings_at_the_seam, exactly_at_the_limit, ahead_and_back, one_state_alone,
     ], mistakes="""
         np.abs(wrap_angle(states[kept, 2] - states[i, 2])) => np.abs(states[kept, 2] - states[i, 2]) % np.pi
@@ -348,5 +370,31 @@ EXERCISES = [
         The right places, but sorted by index. The best comes first.
         turned < radians => turned < np.deg2rad(radians)
         The limit is in radians already.
+    """),
+    Exercise("10.5", search_numbers, buildings, "challenge", cases=[two_bins_with_a_whole_number], mistakes="""
+        np.log(miss) / np.log(1 - 1 / bins) => -np.log(miss) * bins
+        exp(-n / bins) is (1 - 1 / bins)^n for many bins only. Take the logarithm of the power itself.
+        np.ceil => np.floor
+        np.ceil => np.round
+        One draw too few: with a smaller whole number the bin is missed more often than `miss`. Round up.
+        1 - 1 / bins => 1 / bins
+        1 / bins is the probability that a draw hits the camera's bin. Which one must happen n times in a row?
+        np.log(miss) => np.log(miss / bins)
+        You ask that no bin at all is missed. Only the camera's own bin must get a draw.
+        np.log(miss) => np.log(1 - miss)
+        `miss` is the probability that the bin gets none, not that it gets one.
+        least = => least = bins; _ =
+        As many draws as bins miss a given bin in 37 of 100 runs. Solve (1 - 1 / bins)^n = miss for n.
+        (2 * least) => least
+        Solve (10.3) for the error once more: it stands below the fraction line together with a 2.
+        bracket**3 => bracket
+        The bracket of (10.3) is cubed.
+        norm.ppf(probability) => norm.ppf(1 - probability)
+        norm.ppf(probability) => norm.ppf((1 + probability) / 2)
+        z belongs to `probability` itself, one side of the bell: norm.ppf(probability).
+        (bins - 1) / => bins /
+        All bins are occupied, so k = bins, and (10.3) has k - 1 above the fraction line.
+        return least, (bins - 1) / (2 * least) * bracket**3 => return least, 0.05
+        The error is not the lesson's: it is the one with which (10.3) asks for just `least` particles.
     """),
 ]

@@ -1,6 +1,9 @@
 """Right answers to lesson 10 by other ways than its solutions."""
 
+from statistics import NormalDist
+
 import numpy as np
+from scipy.optimize import brentq
 
 from course_lib.beyond.lost_and_found.adaptive_count import kld_count
 
@@ -91,7 +94,18 @@ def by_striking_out(states, scores, metres, radians):
     return np.array(kept, dtype=np.int32)
 
 
+def by_counting(bins, miss, probability):
+    """Draw by draw; then the error by bisection of (10.3)."""
+    least, empty = 0, 1.0
+    while empty > miss * (1 + 1e-12):
+        least, empty = least + 1, empty * (1 - 1 / bins)
+    share = 2 / (9 * (bins - 1))
+    wanted = (bins - 1) / 2 * (1 - share + np.sqrt(share) * NormalDist().inv_cdf(probability)) ** 3
+    return least, brentq(lambda error: wanted / error - least, 1e-9, 1e3, xtol=1e-12)
+
+
 RIGHT = [
+    ("10.5", by_counting),
     ("10.1", lambda free, cell, u: np.transpose(by_running_sum(free, cell, u))),
     ("10.1", by_loops),
     ("10.1", by_argwhere),
