@@ -10,5 +10,5 @@ from course_lib.lessons.lesson_12.measures import (
     precision_and_recall,
     training_picture,
 )
-from course_lib.lessons.lesson_12.panel import PANELS
+from course_lib.lessons.lesson_12.panel import PANELS, hue_panel, seam_panel
 from course_lib.lessons.lesson_12.seam_cuts import cut_counts, cut_sofa, cut_table, said_of_the_sofa, true_object
