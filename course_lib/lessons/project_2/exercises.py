@@ -16,7 +16,7 @@ def rotation(theta):
 
 
 def angles_of(box, width):
-    """(azimuth, elevation) in radians of the centre of a box (4,) on a panorama `width` pixels wide."""
+    """(azimuth, elevation) of a box's centre, radians; box (4,) pixels."""
     u, v = (box[0] + box[2]) / 2, (box[1] + box[3]) / 2
     return wrap_angle((0.5 - u / width) * 2 * np.pi), (0.5 - v / (width / 2)) * np.pi
 
@@ -37,7 +37,7 @@ def a_box_across_the_seam(rng: np.random.Generator) -> tuple:
 
 
 def pair_boxes(upper_labels, upper_angles, lower_labels, lower_angles, largest_gap):
-    """For every upper box the index of its lower one (n,), -1: none."""
+    """Index (n,) of the lower box of every upper box; -1: none."""
     gap = np.abs(wrap_angle(upper_angles[:, None, 0] - lower_angles[None, :, 0]))
     same = np.asarray(upper_labels)[:, None] == np.asarray(lower_labels)[None]
     gap[~same | (lower_angles[None, :, 1] <= upper_angles[:, None, 1]) | (gap > largest_gap)] = np.inf
@@ -113,7 +113,7 @@ def nothing_seen_below(rng: np.random.Generator) -> tuple:
 
 
 def places_of(upper_angles, lower_angles, baseline):
-    """Places (n, 2) in metres, body frame, of pairs of (azimuth, elevation) (n, 2); NaN where there is none."""
+    """Places (n, 2) in metres, body frame; NaN where the rays tell none."""
     slope = np.tan(lower_angles[:, 1]) - np.tan(upper_angles[:, 1])
     rho = np.full(len(slope), np.nan)
     there = lower_angles[:, 1] - upper_angles[:, 1] > 1e-3
@@ -141,7 +141,7 @@ def no_pairs(rng: np.random.Generator) -> tuple:
 
 
 def penalties(labels, places, hues, saturations, map_labels, map_places, map_hues, map_saturations):
-    """Penalties (n, m) of every observation with every landmark."""
+    """Eq. (1) as a table (n, m); labels (n,), places (n, 2), hues and saturations (n,), and the map's (m, ...)."""
     d_hue = np.abs(hues[:, None] - map_hues)
     d_hue = np.nan_to_num(np.minimum(d_hue, 360 - d_hue))
     d_saturation = np.abs(saturations[:, None] - map_saturations)
@@ -183,7 +183,7 @@ def a_landmark_at_the_centroid(rng: np.random.Generator) -> tuple:
 
 
 def associate(cost):
-    """For every row of cost (n, m) the index of its column (n,), -1: none."""
+    """Landmark (n,) of every row of cost (n, m), by the repeated minimum; -1: none, or of another class."""
     cost, column = np.array(cost, dtype=float), np.full(len(cost), -1)
     for _ in range(min(cost.shape)):
         i, j = np.unravel_index(cost.argmin(), cost.shape)
@@ -243,7 +243,7 @@ def more_seen_than_mapped(rng: np.random.Generator) -> tuple:
 
 
 def fit_pose(places, landmarks):
-    """(x, y, theta) that takes places (n, 2) to landmarks (n, 2); NaN three times where there is none."""
+    """(x, y, theta) of the body on the map; places, landmarks (n, 2) metres; NaN where there is none."""
     if len(places) < 2 or min(np.ptp(places, axis=0).max(), np.ptp(landmarks, axis=0).max()) < 1e-3:
         return np.nan, np.nan, np.nan
     a, b = places - places.mean(axis=0), landmarks - landmarks.mean(axis=0)

@@ -78,6 +78,13 @@ def focal_length(ranges, distance):
     return np.sqrt((s[used] ** 2).sum() / (s[used] * y[used]).sum())
 
 
+def by_median(ranges, more, middle=0.5):
+    """The median over the pixels instead of a line; right if `more` is (range / distance)^2 - 1."""
+    square = squares(ranges.shape, middle)
+    used = np.isfinite(more) & (square > 0)
+    return np.sqrt(np.median(square[used] / more[used]))
+
+
 def a_wall(rng: np.random.Generator) -> tuple:
     focal, distance, shape = rng.uniform(8, 40), float(rng.uniform(0.8, 8.0)), tuple(rng.integers(6, 12, 2))
     ranges = distance * np.sqrt(1 + squares(shape) / focal**2)
@@ -323,8 +330,10 @@ EXERCISES = [
     """),
     Exercise("P4.3", focal_length, a_wall, cases=[a_pixel_on_the_axis, corners_not_measured], mistakes="""
         squares(ranges.shape) => squares(ranges.shape, 0.0)
+        ... => return by_median(ranges, (ranges / distance) ** 2 - 1, middle=0.0)
         Half a pixel off: pixel centres are at whole numbers, so the middle is at (width - 1) / 2.
         (ranges / distance) ** 2 - 1 => ranges / distance - 1
+        ... => return by_median(ranges, ranges / distance - 1)
         Pythagoras: it is the *square* of range / distance that is 1 + (pixels / f)^2.
         return np.sqrt( => return (
         That is the square of the focal length.
@@ -332,6 +341,7 @@ EXERCISES = [
         ... => return np.sqrt(np.median(squares(ranges.shape) / ((ranges / distance) ** 2 - 1)))
         Pixels without measurement (NaN), or the one on the axis (0/0), spoil it. Leave them out.
         ** 2 - 1 => ** 2
+        ... => return by_median(ranges, (ranges / distance) ** 2)
         The 1 is missing: (range / distance)^2 = 1 + (pixels / f)^2.
         (ranges / distance) ** 2 - 1 => ranges**2 - distance**2
         Yours changes with the wall's distance: divide the range by it first.
