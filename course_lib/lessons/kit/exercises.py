@@ -38,8 +38,8 @@ class Exercise:
 
     number: such as "03.1". solution: the right function; the notebook's solution is made of its text. inputs: makes one
     tuple of arguments from a `numpy.random.Generator`. level: how hard it is. cases: like `inputs`, but each runs once
-    in every check. They are special cases (a seam, a mirror image, empty input, equal values); a hint may tell their
-    functions' names in words. mistakes: about nine edits of the solution with their hints (`kit.mistakes`).
+    in every check. They are special cases (a seam, a mirror image, empty input, equal values) with a name in words,
+    which a hint may tell: `{"one point": lambda rng: (np.zeros((1, 2)),)}`. mistakes: about nine edits of the solution with their hints (`kit.mistakes`).
     functions: function -> hint, for mistakes that are no edit. tolerance: absolute and relative, as in
     `numpy.allclose`. others: other functions that the task allows, for example another estimator. verify: for tasks
     with many right answers. `verify(arguments, answer)` returns a sentence that says what is wrong, or None. It
@@ -50,7 +50,7 @@ class Exercise:
     solution: Callable
     inputs: Callable[[np.random.Generator], tuple]
     level: Level = "core"
-    cases: Sequence[Callable[[np.random.Generator], tuple]] = ()
+    cases: dict[str, Callable[[np.random.Generator], tuple]] | Sequence[Callable] = field(default_factory=dict)
     mistakes: str = ""
     functions: dict[Callable, str] = field(default_factory=dict)
     tolerance: float = 1e-6
@@ -59,11 +59,14 @@ class Exercise:
 
     def draw(self, rng: np.random.Generator) -> list[tuple]:
         """Return the arguments of every call of one check: the cases, then `N_INPUTS` random inputs."""
-        return [make(rng) for make in (*self.cases, *[self.inputs] * N_INPUTS)]
+        cases = self.cases.values() if isinstance(self.cases, dict) else self.cases
+        return [make(rng) for make in (*cases, *[self.inputs] * N_INPUTS)]
 
     @property
     def case_names(self) -> list[str]:
         """Return the special cases in words: "one point" for `one_point`."""
+        if isinstance(self.cases, dict):
+            return list(self.cases)
         return [make.__name__.strip("_").replace("_", " ") for make in self.cases]
 
     @functools.cached_property
