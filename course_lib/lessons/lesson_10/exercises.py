@@ -113,20 +113,17 @@ EXERCISES = [
         columns[chosen] + u[:, 1], rows[chosen] + u[:, 2] => columns[chosen] + u[:, 0], rows[chosen] + u[:, 1]
         You use u[:, 0] twice. It chooses the cell; u[:, 1] and u[:, 2] say where in the cell.
         ... => return cell * u[:, 1:] * free.shape[::-1]
-        np.nonzero(free) => np.nonzero(np.ones_like(free))
         Your places fill the whole box, walls included. Choose among the free cells first, by u[:, 0].
         ... => return np.zeros((len(u), 2)) if free.all() else free_places(~free, cell, u)
         Your places lie where it is *not* free.
         columns[chosen] + u[:, 1], rows[chosen] + u[:, 2] => rows[chosen] + u[:, 1], columns[chosen] + u[:, 2]
         x runs along the columns and y along the rows. You have them the other way round.
         columns[chosen] + u[:, 1], rows[chosen] + u[:, 2] => columns[chosen], rows[chosen]
-        columns[chosen] + u[:, 1], rows[chosen] + u[:, 2] => columns[chosen] + 0.5, rows[chosen] + 0.5
-        All places of a cell are its corner or its middle. u[:, 1] and u[:, 2] say where in the cell.
+        All your places are corners of cells. u[:, 1] and u[:, 2] say where in the cell.
         columns[chosen] + u[:, 1], rows[chosen] + u[:, 2] => columns[chosen] + u[:, 2], rows[chosen] + u[:, 1]
         The cells are right, but u[:, 1] is for x and u[:, 2] is for y.
         return cell * => return
-        return cell * => return 1 / cell *
-        You count in cells, or divide by their side. Multiply by the side of a cell to get metres.
+        You count in cells. Multiply by the side of a cell to get metres.
         (u[:, 0] * len(rows)).astype(int) => np.round(u[:, 0] * (len(rows) - 1)).astype(int)
         If you round, the first and the last free cell get half their share. Cut the decimals off instead.
         rows, columns = np.nonzero(free) => columns, rows = np.nonzero(free.T)
@@ -139,7 +136,6 @@ EXERCISES = [
         max(0, 1 - s / L) => 1 - s / L
         If the short mean is the greater one, all is well. Then the share is 0; it is never negative.
         return np.array(shares) => return np.where(np.isnan(scores), np.nan, shares)
-        return np.array(shares) => return np.where(np.isnan(scores), 0, shares)
         In a dark frame the means stay as they are, and so does the share: not NaN, and not 0.
         ... => return new_shares(scores, long, short)
         Upside down: the short mean, which follows quickly, goes above the fraction line, the long one below.
@@ -150,7 +146,6 @@ EXERCISES = [
         s = L = scores[0] => s = L = 0.0
         Your means begin at 0, and the long one needs a hundred frames to forget it. Begin with a score.
         if not np.isnan(score): => if True:
-        max(0, => np.maximum(0, and also if not np.isnan(score): => if True:
         One NaN score makes every later mean NaN. In the dark the means stay as they are.
         ... => return new_shares(np.nan_to_num(scores), short, long)
         You take a dark frame for the score 0. The camera saw nothing, so the means stay as they are.
@@ -169,20 +164,16 @@ EXERCISES = [
         len(seen), least => max(1, len(set(bins[: n - 1]))), least
         You compare too early: first count the bin of the present draw, then compare.
         return len(bins) => return -1
-        return len(bins) => return kld_count(len(seen), least, 10**6)
         If the draws run out before the bound is reached, the answer is their number T.
         10**6 => 3_000
         You stop at 3,000, the upper bound of the lesson. Here it is 10**6.
-        ... => return len(np.unique(bins))
         return n => return len(seen) and also return len(bins) => return len(seen)
         You give the number of bins. The task asks for the number of draws.
-        ... => return min(kld_count(len(np.unique(bins)), least, 10**6), len(bins))
         ... => return kld_count(len(np.unique(bins)), least, 10**6)
         You look at all bins before you draw. Only the bins that were hit so far count.
         kld_count(len(seen) => kld_count(n
         You never stop. Do you count draws instead of bins? Two draws in one bin occupy one bin.
         kld_count(len(seen), least => kld_count(len(seen), 1
-        kld_count(len(seen), least => kld_count(len(seen), 100
         You do not use `least`, the smallest number of draws that can be enough.
         kld_count(len(seen), least, 10**6) => least
         You always stop at `least`. The bound grows with the bins that are hit.
@@ -204,7 +195,6 @@ EXERCISES = [
         states[kept, => states[scores > scores[i],
         You compare with *all* better states. A state that was dropped itself does not count.
         return np.array(kept) => return scores[kept]
-        return np.array(kept) => return states[kept]
         return np.array(kept) => return np.isin(np.arange(len(scores)), kept)
         Return indices into the states as they were given, not scores, states or a mask.
         wrap_angle(states[kept, 2] - states[i, 2]) => states[kept, 2] - states[i, 2]
@@ -227,7 +217,6 @@ EXERCISES = [
         np.log(miss) / np.log(1 - 1 / bins) => -np.log(miss) * bins
         exp(-n / bins) is (1 - 1 / bins)^n for many bins only. Take the logarithm of the power itself.
         np.ceil => np.floor
-        np.ceil => np.round
         One draw too few: with a smaller whole number the bin is missed more often than `miss`. Round up.
         1 - 1 / bins => 1 / bins
         1 / bins is the probability that a draw hits the camera's bin. Which one must happen n times in a row?

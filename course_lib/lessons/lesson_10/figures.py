@@ -60,32 +60,32 @@ def hotel(recording: Recording, uncovered: int) -> Figure:
     draw_hotel(axes, "A hotel floor from above, and a kidnapping")
     draw_poses(axes, recording.states[:uncovered], BLUE, "before")
     draw_poses(axes, recording.states[uncovered::2], VERMILION, "after, seen again")
-    start, end = recording.states[uncovered - 1, :2], recording.states[uncovered, :2]
-    arrow = {"arrowstyle": "->", "linestyle": "--", "color": "black", "connectionstyle": "arc3,rad=-0.25", "lw": 1.5}
-    axes.annotate("", end, start, arrowprops=arrow | {"shrinkA": 5, "shrinkB": 5})
-    axes.plot([], [], color="black", linestyle="--", label="carried, covered")
+    start, end = recording.states[[uncovered - 1, uncovered], :2]
+    line = {"color": "black", "linestyle": "--"}
+    arrow = line | {"arrowstyle": "->", "connectionstyle": "arc3,rad=-0.25", "lw": 1.5, "shrinkA": 5, "shrinkB": 5}
+    axes.annotate("", end, start, arrowprops=arrow)
+    axes.plot([], [], **line, label="carried, covered")
     axes.legend(ncols=3, **BELOW)
-    alt = """A hotel floor from above: three rooms over a corridor, 101 and 102 furnished alike. A camera walks along the
-        corridor below 101; a dashed arrow carries it into 103, where it looks around."""
+    alt = """A hotel floor from above: three rooms over a corridor, 101 and 102 furnished alike. A camera walks along
+        the corridor below 101; a dashed arrow carries it into 103, where it looks around."""
     return described(figure, alt)
 
 
 def carried(errors: np.ndarray, scores: np.ndarray, weights: np.ndarray, uncovered: int) -> Figure:
     """Error, raw score and greatest weight over the frames of runs `(runs, T)`. The kidnapping is a line."""
     figure, axes = new_figure(1, 3, size=(10.2, 2.9))
-    for a, rows, title, label in (
-        (axes[0], errors, "How far off it is", "distance from the truth [m]"),
-        (axes[1], scores, "Raw score of the best particle", "raw score [-]"),
-        (axes[2], weights, "Weight of the best particle", "weight [-]"),
+    for a, rows, title, label, top in (
+        (axes[0], errors, "How far off it is", "distance from the truth [m]", None),
+        (axes[1], scores, "Raw score of the best particle", "raw score [-]", None),
+        (axes[2], weights, "Weight of the best particle", "weight [-]", 1.05),
     ):
         for k, row in enumerate(rows):
             a.plot(row, **style(k, 3, linewidth=1.1), label=f"run {k + 1}")
         a.axvline(uncovered - 0.5, linewidth=1.2, **EVENT)
-        a.set(title=title, xlabel="frame [-]", ylabel=label, ylim=(0, None))
-    axes[2].set_ylim(0, 1.05)
+        a.set(title=title, xlabel="frame [-]", ylabel=label, ylim=(0, top))
     axes[0].legend(loc="center left", fontsize=8)
-    alt = """Three panels over 30 frames. The error jumps to 6 m at the kidnapping and stays above 5 m. The score falls to
-        0.2 there and climbs back to nearly 0.6. The best weight goes up and down before and after."""
+    alt = """Three panels over 30 frames. The error jumps to 6 m at the kidnapping and stays above 5 m. The score
+        falls to 0.2 there and climbs back to nearly 0.6. The best weight goes up and down before and after."""
     return described(figure, alt)
 
 
@@ -110,8 +110,8 @@ def first_scores(states: np.ndarray, scores: np.ndarray, true: np.ndarray) -> Fi
     draw_camera(axes, true)
     figure.colorbar(dots, ax=axes, label="score of a coarse image [-]", shrink=0.8)
     axes.legend(ncols=3, **BELOW)
-    alt = """The hotel from above, full of dots coloured by score. The twenty best have arrows; seven lie near the camera
-        in 101 or near its double in 102, the others elsewhere in the three rooms."""
+    alt = """The hotel from above, full of dots coloured by score. The twenty best have arrows; seven lie near the
+        camera in 101 or near its double in 102, the others elsewhere in the three rooms."""
     return described(figure, alt)
 
 
@@ -128,8 +128,8 @@ def kld(rounds: Sequence[Round]) -> Figure:
     right.set(title="As the search narrows", xlabel="frame [-]", ylabel="number [-]")
     for axes in (left, right):
         axes.legend(fontsize=8)
-    alt = """Left: particles needed grow nearly as the occupied bins do; a smaller error needs more. Right: over the frames
-        of a run bins fall from about a hundred to a few, and particles from 3000 to 100."""
+    alt = """Left: particles needed grow nearly as the occupied bins do; a smaller error needs more. Right: over the
+        frames of a run bins fall from about a hundred to a few, and particles from 3000 to 100."""
     return described(figure, alt)
 
 
@@ -154,37 +154,38 @@ def evidence(run: Sequence[PoseCandidates]) -> Figure:
     top.set_yticks(range(3), levels)
     top.set(title="What the search says", ylabel="status [-]", xlabel="frame [-]", ylim=(-0.5, 2.5))
     for k, (offset, name) in enumerate(((0 * ALIKE, "at the camera (101)"), (ALIKE, "at its double (102)"))):
-        places = leaving_101().states[:, :3] + offset
-        near = [
-            [one.evidence for one in found.poses if np.linalg.norm(one.state[:3] - place) < 0.5]
-            for found, place in zip(run, places, strict=False)
-        ]
-        axes.plot([max(evidence, default=np.nan) for evidence in near], **style(k, 4), label=name)
+        best = np.full(len(run), np.nan)
+        for frame, found in enumerate(run):
+            place = leaving_101().states[frame, :3] + offset
+            near = [one.evidence for one in found.poses if np.linalg.norm(one.state[:3] - place) < 0.5]
+            best[frame] = max(near, default=np.nan)
+        axes.plot(best, **style(k, 4), label=name)
     axes.set(title="Evidence of the two places", xlabel="frame [-]", ylabel="evidence [-]")
     axes.legend(loc="lower left", fontsize=8)
-    alt = """Above: searching for three frames, then several, then found from frame 21 on. Below: evidence of the place in
-        101 and of its double in 102 are both near 1 until frame 20, when the double's falls and ends."""
+    alt = """Above: searching for three frames, then several, then found from frame 21 on. Below: evidence of the place
+        in 101 and of its double in 102 are both near 1 until frame 20, when the double's falls and ends."""
     return described(figure, alt)
 
 
 def trade_off(ratios: np.ndarray) -> tuple[Figure, list[tuple[float, float, float, list[int | None]]]]:
     """False alarms, and how late kidnappings are noticed, for ratios of the alarm.
 
-    Return also the rows that are drawn: ratio, false alarms [%] by the score alone and with the second condition, and
-    the delays [frames] of the three kidnappings.
+    Return also rows of a ratio, its false alarms [%] by the score alone and with the second condition, and the delays
+    [frames] of the three kidnappings.
     """
     figure, (left, right) = new_figure(1, 2, size=(9.4, 3.0))
-    alone, both = (
-        [[alarms(trace, c, cannot_be_right=asked)[1:] for trace in traces().values()] for c in ratios]
-        for asked in (False, True)
-    )
-    shares = [[100 * np.mean([false for false, _ in row]) / KIDNAPPED for row in rows] for rows in (alone, both)]
-    delays = [[late for _, late in row] for row in both]
-    for k, name in enumerate(("the score alone", "and the pose cannot be right")):
-        left.plot(ratios, shares[k], **style(k, 4), label=name)
+    rows = []
+    for c in ratios:
+        alone, both = (
+            [alarms(trace, c, cannot_be_right=asked)[1:] for trace in traces().values()] for asked in (False, True)
+        )
+        false = (100 * np.mean([n for n, _ in found]) / KIDNAPPED for found in (alone, both))
+        rows.append((c, *false, [late for _, late in both]))
+    for k, name in ((1, "the score alone"), (2, "and the pose cannot be right")):
+        left.plot(ratios, [row[k] for row in rows], **style(k - 1, 4), label=name)
+    delays = np.array([row[3] for row in rows], dtype=float)  # None becomes NaN
     for k, goal in enumerate(GOALS):
-        late = [np.nan if row[k] is None else row[k] for row in delays]
-        right.plot(ratios, late, **style(k + 2, 4), label=f"kidnapped {goal}")
+        right.plot(ratios, delays[:, k], **style(k + 2, 4), label=f"kidnapped {goal}")
     left.set(title="Frames in peace with an alarm", xlabel="ratio c [-]", ylabel="false alarms [%]")
     right.set(title="How late the alarm comes (no dot: never)", xlabel="ratio c [-]", ylabel="delay [frames]")
     right.set(xlim=left.get_xlim(), ylim=(-0.3, 4.2))
@@ -192,20 +193,16 @@ def trade_off(ratios: np.ndarray) -> tuple[Figure, list[tuple[float, float, floa
         axes.legend(fontsize=8)
     alt = """Left: false alarms rise from 0 at a ratio of 0.7 to over 30 percent by the score alone, and stay 0 with the
         second condition. Right: the delay falls from two frames at 0.6 to one at most; below 0.6 comes no alarm."""
-    return described(figure, alt), list(zip(ratios, *shares, delays, strict=True))
+    return described(figure, alt), rows
 
 
-TOLD = {  # title, frame, what happens there, alternative text
-    "next door": (
-        "Put into the room next door", 8, "put into 102",
-        "The error jumps to 4 m at frame 8. The filter says tracked for 14 frames, then lost when the camera reaches "
-        "the corridor, and is right again from frame 25 on.",
-    ),
-    "door": (
-        "An open door that is shut on the map", 10, "looks at the door",
-        "The filter is right until frame 12, though it says lost in six frames; it searches in frames 13 to 15, and "
-        "from frame 16 on it says tracked at 4 m from the truth.",
-    ),
+TOLD = {  # title, frame, what happens in it, alternative text
+    "next door": ("Put into the room next door", 8, "put into 102", """The error jumps to 4 m at frame 8. The filter
+        says tracked for 14 frames, then lost when the camera reaches the corridor, and is right again from frame 25
+        on."""),
+    "door": ("An open door that is shut on the map", 10, "looks at the door", """The filter is right until frame 12,
+        though it says lost in six frames; it searches in frames 13 to 15, and from frame 16 on it says tracked at 4 m
+        from the truth."""),
 }  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """What lesson 10 measures in its hotel: kidnappings, a search where rooms look alike, the raw score over time."""
 
 import functools
+import itertools
 import json
 import warnings
 from collections import namedtuple
@@ -19,10 +20,8 @@ from course_lib.lessons.lesson_10.narrowing import OUT_OF_101, leaving_101
 from course_lib.paths import data_path
 from course_lib.rendering.renderer import DepthRenderer
 
-SEARCH = {"least": 200, "most": 2_000}  # particles of the search: the hotel is small
-PARTICLES = 150
-SEARCHED = 24  # frames of the walk out of 101
-NEAR = 0.2  # metres
+PARTICLES, SEARCH = 150, {"least": 200, "most": 2_000}  # of the filter and of the search: the hotel is small
+SEARCHED, NEAR = 24, 0.2  # frames of the walk out of 101, metres
 
 # Walks, as corners [x, y, yaw in degrees].
 ON_A_WAGON = ((1.2, 0.9, 5), (2.8, 0.8, -5))
@@ -58,21 +57,17 @@ KIDNAPPINGS = {
 }
 
 
-def follow(
-    recording: Recording, seed: int, covered: range = range(0), closed: tuple = (), until: int | None = None
-) -> Iterator[RecoveryEstimate]:
-    """Yield what `RecoveringLocalizer` finds on a recording whose start it knows.
+def follow(recording: Recording, seed: int, closed: tuple = (), until: int | None = None) -> Iterator[RecoveryEstimate]:
+    """Yield what `RecoveringLocalizer` finds in each frame (up to frame `until`) of a recording whose start it knows.
 
-    covered: frames in which the camera sees nothing. closed: rooms whose door is shut on the map. until: only the
-    first so many frames.
+    closed: rooms whose door is shut on the map.
     """
     with DepthRenderer(hotel_map(*closed), CAMERA) as renderer, warnings.catch_warnings():
         warnings.simplefilter("ignore", NoMeasurementWarning)  # covered on purpose
         localizer = RecoveringLocalizer(renderer, PARTICLES, seed=seed, **SEARCH)
         localizer.initialize(recording.states[0])
-        for number, (depth, down) in enumerate(zip(recording.depths[:until], recording.gravity[:until], strict=True)):
-            dark = number in covered
-            yield localizer.step(np.full_like(depth, np.nan) if dark else depth, gravity=None if dark else down)
+        for depth, down in zip(recording.depths[:until], recording.gravity[:until], strict=True):
+            yield localizer.step(depth, gravity=down)
 
 
 def kidnap(name: str) -> tuple[int | None, int, int]:
@@ -81,11 +76,11 @@ def kidnap(name: str) -> tuple[int | None, int, int]:
     Return the frames after the uncovering until the state was right and tracked (None if never), the poses drawn from
     free space, and how many places the search named as equals in the last frame.
     """
-    before, after = KIDNAPPINGS[name]
-    first = walk(before, BEFORE)
-    states = np.concatenate([first, np.repeat(first[-1:], COVERED, axis=0), walk(after, AFTER)])
-    recovered, particles, uncovered = None, 0, BEFORE + COVERED
-    for number, found in enumerate(follow(record(states, 10_001), 10_001, range(BEFORE, uncovered))):
+    before, after = (walk(corners, n) for corners, n in zip(KIDNAPPINGS[name], (BEFORE, AFTER), strict=True))
+    states = np.concatenate([before, np.repeat(before[-1:], COVERED, axis=0), after])
+    recording, recovered, particles, uncovered = record(states, 10_001), None, 0, BEFORE + COVERED
+    recording.depths[BEFORE:uncovered] = np.nan
+    for number, found in enumerate(follow(recording, 10_001)):
         particles += found.candidates.particles if found.candidates else 0
         right = np.linalg.norm(found.estimate.state[:3] - states[number, :3]) <= NEAR
         if number >= uncovered and right and found.mode != "searching" and found.estimate.status == "tracked":
@@ -100,11 +95,10 @@ def kidnap(name: str) -> tuple[int | None, int, int]:
 @functools.cache
 def search_run() -> list[PoseCandidates]:
     """Return what `GlobalSearch` says in every frame of the walk out of 101."""
-    recording = leaving_101()
     with DepthRenderer(hotel_map(), CAMERA) as renderer:
         search = GlobalSearch(renderer, seed=10_002, **SEARCH)
-        frames = progress(range(SEARCHED), "searching")
-        return [search.step(recording.depths[k], recording.gravity[k]) for k in frames]
+        frames = zip(progress(range(SEARCHED), "searching"), leaving_101().depths, leaving_101().gravity, strict=False)
+        return [search.step(depth, down) for _, depth, down in frames]
 
 
 # The raw score of a filter that nobody helps: a person walks by, later it is carried away. scores: `(T,)` raw scores.
@@ -133,11 +127,8 @@ def traces() -> dict[str, Trace]:
 
 
 def running_mean(scores: np.ndarray, share: float) -> np.ndarray:
-    """Return the running mean of scores `(T,)`, in which each frame counts `share`. It begins at a score. Eq. (10.1)."""
-    means = [scores[0]]
-    for score in scores[1:]:
-        means.append(means[-1] + share * (score - means[-1]))
-    return np.array(means)
+    """Return the running mean of scores `(T,)`, from the first score on. Each frame counts `share`. Eq. (10.1)."""
+    return np.array(list(itertools.accumulate(scores, lambda mean, score: mean + share * (score - mean))))
 
 
 def alarms(
@@ -156,15 +147,12 @@ def alarms(
 def stored_table(place: str) -> str:
     """Return what `demo lost` measured in the "kitchen" or the "corridor": shares with Wilson's 95 % intervals."""
     found = json.loads(data_path(f"corridor/results/lost_{place}.json").read_text(encoding="utf-8"))
-    n, lines = found["trials"], [f"{place}, {found['trials']} trials"]
+    n, false, frames = found["trials"], found["false_alarms"], found["undisturbed_frames"]
+    lines = [f"{place}, {n} trials"]
     for name, key in (("kidnapped, recovered", "kidnapped_recovered"), ("started anywhere, right", "started_right")):
         low, high = wilson_percent(found[key], n)
         lines.append(f"{name:26} {found[key]:3} of {n}  (95 % interval {low:.0f} to {high:.0f} %)")
-    false, frames = found["false_alarms"], found["undisturbed_frames"]
     low, high = wilson_percent(false, frames)
     lines.append(f"{'false alarms in peace':26} {false:3} of {frames} frames  ({low:.2f} to {high:.2f} %)")
-    lines.append(
-        f"{'median':26} {found['frames_to_recover']:.0f} frames to recover; to start: {found['frames_to_start']:.0f} "
-        f"frames, {found['particles_to_start']:.0f} particles"
-    )
-    return "\n".join(lines)
+    start = f"to start: {found['frames_to_start']:.0f} frames, {found['particles_to_start']:.0f} particles"
+    return "\n".join([*lines, f"{'median':26} {found['frames_to_recover']:.0f} frames to recover; {start}"])
