@@ -106,8 +106,6 @@ EXERCISES = [
     }, mistakes="""
         np.median(errors) => np.sort(errors)[len(errors) // 2]
         For an even number of errors yours is one of the middle two. A median lies halfway between.
-        np.median(errors) => errors[len(errors) // 2]
-        You take the middle frame. A median is the middle of the errors *sorted* by size.
         np.sqrt(np.mean(errors**2)) => np.std(errors)
         np.std measures the scatter about the mean: a constant error of 5 m would get 0. Take it about zero.
         np.sqrt(np.mean(errors**2)) => np.mean(errors)
@@ -119,8 +117,7 @@ EXERCISES = [
         errors <= 0.30 => errors <= 3 * np.sqrt(np.mean(errors**2))
         You use three of the run's own sigma, so a bad run gets a wide gate. The gate is 0.30 m for all.
         np.mean(errors <= 0.30) => 100 * np.mean(errors <= 0.30)
-        np.mean(errors <= 0.30) => np.sum(errors <= 0.30)
-        Your last number is in percent, or counts frames. Give a share from 0 to 1.
+        Your last number is in percent. Give a share from 0 to 1.
         errors <= 0.30 => errors > 0.30
         Your last number is the share of the errors beyond 0.30 m. The task asks for the others.
     """),

@@ -69,14 +69,6 @@ def localize_along(
     return AlongRun(x, nearest, summarize(np.abs(x - table.true[:, 0])), scores, best)
 
 
-def row(run: AlongRun) -> str:
-    """Return one row as in table 1. The table of agreement has steps of 0.05 m, so we tell nothing finer."""
-    values = (run.nearest.median, run.nearest.sigma, run.timed.median, run.timed.errors.max())
-    median, sigma, timed, largest = ("< 0.05 m" if value < 0.05 else f"{value:.2f} m" for value in values)
-    within = f"<= 0.30 m: {run.nearest.within_3sigma:.0%}"
-    return f"nearest path: median {median}, rms (sigma) {sigma}, {within};  timed: median {timed}, largest {largest}"
-
-
 def along_panel() -> Panel:
     """Change one parameter of the filter and predict its row of the table."""
     table, frames = agreement_table(), np.array(STRETCH)
@@ -114,7 +106,11 @@ def along_panel() -> Panel:
             f"Position along the corridor, errors, and the best particle's score and weight over {len(frames)} frames, "
             f"for {int(n_particles)} particles, sigma {sigma_x:.2f} m, beta {beta}, start off by {start_error:.1f} m."
         )
-        return Drawing(live.png(), alt, row(run))
+        # The table of agreement has steps of 0.05 m, so we tell nothing finer.
+        told = (run.nearest.median, run.nearest.sigma, run.timed.median, run.timed.errors.max())
+        median, sigma, timed, largest = ("< 0.05 m" if value < 0.05 else f"{value:.2f} m" for value in told)
+        nearest = f"median {median}, rms (sigma) {sigma}, <= 0.30 m: {run.nearest.within_3sigma:.0%}"
+        return Drawing(live.png(), alt, f"nearest path: {nearest};  timed: median {timed}, largest {largest}")
 
     return Panel("08 predict the table", CONTROLS, draw)
 

@@ -131,7 +131,6 @@ EXERCISES = [
         You take the root of the new dimension, but n fill the *old* one. Take the d-th root, then the power d_new.
         (n ** (1 / d)) ** d_new => n ** (1 / d) ** d_new
         a ** b ** c is a ** (b ** c) in Python: set brackets around the d-th root.
-        (n ** (1 / d)) ** d_new => n * d_new / d
         (n ** (1 / d)) ** d_new => n ** (1 / d) * d_new
         You multiply by d_new. n ** (1 / d) lie along one edge; they fill d_new edges by a power, not a product.
         ... => return n ** (d / d_new)
@@ -184,8 +183,7 @@ EXERCISES = [
         np.linalg.solve(C, e) => C @ e
         You multiply by C. A large covariance must make the number small: use its inverse.
         / len(e) =>
-        / len(e) => / 6
-        Your first number grows with the number of components: divide by d, errors.shape[1], which is not always 6.
+        Your first number grows with the number of components: divide by d, which is errors.shape[1].
         np.mean(within) => 100 * np.mean(within)
         Your second number is in percent. Give a share between 0 and 1.
     """),

@@ -1,7 +1,7 @@
 """Lesson 10, lost and found: a hotel with two rooms alike, kidnappings in it, filters that start anywhere."""
 
 from course_lib.lessons.lesson_10 import figures
-from course_lib.lessons.lesson_10.hotel import CAMERA, hotel_map
+from course_lib.lessons.lesson_10.hotel import CAMERA, carried_away, carried_next_door, hotel_map, into_102, leaving_101
 from course_lib.lessons.lesson_10.narrowing import (
     ALPHA,
     BETA,
@@ -12,19 +12,9 @@ from course_lib.lessons.lesson_10.narrowing import (
     distance_to_either,
     free_space,
     inside_furniture,
-    leaving_101,
     narrow,
     shares,
     start_anywhere,
 )
 from course_lib.lessons.lesson_10.panel import PANELS, alarm_panel, anywhere_panel
-from course_lib.lessons.lesson_10.trials import (
-    KIDNAPPINGS,
-    carried_away,
-    carried_next_door,
-    follow,
-    into_102,
-    kidnap,
-    search_run,
-    stored_table,
-)
+from course_lib.lessons.lesson_10.trials import KIDNAPPINGS, follow, kidnap, search_run, stored_table

@@ -110,8 +110,6 @@ EXERCISES = [
         "numbers on the borders": lambda rng: (np.array([[False, True, True], [True, False, True]]), 0.5,
                                                np.column_stack([[0.0, 0.25, 0.5, 0.75], rng.random((4, 2))])),
     }, mistakes="""
-        columns[chosen] + u[:, 1], rows[chosen] + u[:, 2] => columns[chosen] + u[:, 0], rows[chosen] + u[:, 1]
-        You use u[:, 0] twice. It chooses the cell; u[:, 1] and u[:, 2] say where in the cell.
         ... => return cell * u[:, 1:] * free.shape[::-1]
         Your places fill the whole box, walls included. Choose among the free cells first, by u[:, 0].
         ... => return np.zeros((len(u), 2)) if free.all() else free_places(~free, cell, u)
@@ -132,7 +130,6 @@ EXERCISES = [
     Exercise("10.2", new_shares, falling_scores, cases={
         "the example of the task": lambda rng: (np.array([0.8, 0.8, np.nan, 0.4]), 0.5, 0.1),
     }, mistakes="""
-        max(0, 1 - s / L) => abs(1 - s / L)
         max(0, 1 - s / L) => 1 - s / L
         If the short mean is the greater one, all is well. Then the share is 0; it is never negative.
         return np.array(shares) => return np.where(np.isnan(scores), np.nan, shares)
@@ -165,8 +162,6 @@ EXERCISES = [
         You compare too early: first count the bin of the present draw, then compare.
         return len(bins) => return -1
         If the draws run out before the bound is reached, the answer is their number T.
-        10**6 => 3_000
-        You stop at 3,000, the upper bound of the lesson. Here it is 10**6.
         return n => return len(seen) and also return len(bins) => return len(seen)
         You give the number of bins. The task asks for the number of draws.
         ... => return kld_count(len(np.unique(bins)), least, 10**6)
@@ -224,8 +219,6 @@ EXERCISES = [
         You ask that no bin at all is missed. Only the camera's own bin must get a draw.
         np.log(miss) => np.log(1 - miss)
         `miss` is the probability that the bin gets no draw, not that it gets one.
-        least = => least = bins; _ =
-        As many draws as bins miss a given bin in 37 of 100 runs. Solve (1 - 1 / bins)^n = miss for n.
         (2 * least) => least
         Solve (10.3) for the error once more: it stands below the fraction line together with a 2.
         norm.ppf(probability) => norm.ppf(1 - probability)

@@ -12,8 +12,8 @@ from matplotlib.ticker import MaxNLocator
 from course_lib.beyond.lost_and_found.adaptive_count import kld_count
 from course_lib.beyond.lost_and_found.global_search import PoseCandidates
 from course_lib.lessons.kit.display import described
-from course_lib.lessons.lesson_10.hotel import ALIKE, FURNITURE, WALLS, Recording
-from course_lib.lessons.lesson_10.narrowing import Round, leaving_101, shares
+from course_lib.lessons.lesson_10.hotel import ALIKE, FURNITURE, WALLS, Recording, leaving_101
+from course_lib.lessons.lesson_10.narrowing import Round, shares
 from course_lib.lessons.lesson_10.trials import GOALS, KIDNAPPED, alarms, traces
 from course_lib.plots.figures import BLACK, BLUE, VERMILION, line_style, new_figure
 
@@ -44,8 +44,7 @@ def draw_poses(axes: Axes, states: np.ndarray, colour: str, label: str) -> None:
     """Draw states `(N, 6)` from above: dots with a short line in the direction of view."""
     ahead = states[:, :2] + 0.3 * np.column_stack([np.cos(states[:, 5]), np.sin(states[:, 5])])
     axes.plot(*states[:, :2].T, "o", color=colour, markersize=4, label=label)
-    for a, b in zip(states[:, :2], ahead, strict=True):
-        axes.plot([a[0], b[0]], [a[1], b[1]], color=colour, linewidth=1.3)
+    axes.plot(*np.array([states[:, :2], ahead]).transpose(2, 0, 1), color=colour, linewidth=1.3)
 
 
 def draw_camera(axes: Axes, true: np.ndarray) -> list:

@@ -80,3 +80,36 @@ def walk(corners: Sequence[Sequence[float]], frames: int, sway: float = 1.0) -> 
     step = np.arange(frames)
     roll, pitch = np.deg2rad(1.5 * sway) * np.sin(1.3 * step), np.deg2rad(8 + 2 * sway * np.sin(0.9 * step))
     return np.column_stack([x, y, EYE + 0.02 * sway * np.sin(1.7 * step), roll, pitch, np.deg2rad(yaw_deg)])
+
+
+# Walks, as corners [x, y, yaw in degrees].
+ON_A_WAGON = ((1.2, 0.9, 5), (2.8, 0.8, -5))
+IN_THE_CORRIDOR = ((1.2, 0.9, 5), (3.6, 0.8, -5))
+IN_103 = ((8.7, 2.3, 60), (9.0, 2.5, 100), (8.9, 2.6, 120))
+IN_101 = ((3.3, 4.2, 200), (3.2, 3.6, 225))
+IN_102 = ((7.3, 4.2, 200), (7.2, 3.6, 225))
+TO_THE_LIFT = ((6.0, 0.9, 10), (8.0, 0.7, 0))
+ALONG = ((1.0, 0.9, 5), (4.0, 0.8, -5), (7.5, 0.8, 5))
+TO_AN_OPEN_DOOR = ((9.5, 0.8, 170), (7.5, 0.8, 178), (6.5, 0.8, 120), (6.9, 0.9, 90), (7.0, 0.9, 90))
+# From beside the bed of 101 out of the door, and to the left.
+OUT_OF_101 = (
+    (3.3, 4.2, 200), (3.2, 3.6, 225), (3.05, 3.0, 258), (3.05, 2.2, 268),
+    (3.05, 1.4, 262), (2.9, 0.9, 225), (2.6, 0.85, 180), (2.1, 0.85, 180),
+)  # fmt: skip
+FRAMES = 30
+leaving_101 = functools.cache(lambda: record(walk(OUT_OF_101, FRAMES), seed=10_002))
+
+
+def carried_away() -> Recording:
+    """Record ten frames on a wagon along the corridor, then twenty in 103."""
+    return record(np.concatenate([walk(ON_A_WAGON, 10, sway=0), walk(IN_103, 20, sway=0)]), 10_001)
+
+
+def carried_next_door() -> Recording:
+    """Record the walk out of 101. After eight frames the camera is at the same place in 102; nothing was covered."""
+    return record(walk(OUT_OF_101, 32) + np.outer(np.arange(32) >= 8, [*ALIKE, 0, 0, 0]), 10_003)
+
+
+def into_102() -> Recording:
+    """Record a walk along the corridor to the open door of 102."""
+    return record(walk(TO_AN_OPEN_DOOR, 20), 10_004)

@@ -10,7 +10,7 @@ from course_lib.beyond.lost_and_found.free_space import FreeSpace
 from course_lib.beyond.lost_and_found.global_search import TILT_SIGMA, upright_poses
 from course_lib.depth_mcl import likelihood, normalize_likelihood, propagate, resample, weights
 from course_lib.geometry import optical_pose, state_from_optical_pose
-from course_lib.lessons.lesson_10.hotel import ALIKE, CAMERA, FURNITURE, hotel_map, record, walk
+from course_lib.lessons.lesson_10.hotel import ALIKE, CAMERA, FURNITURE, hotel_map, leaving_101
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.sensor import subsample_depth
 
@@ -21,12 +21,6 @@ SIGMA = np.array([0.12, 0.12, 0.03, 0.01, 0.02, 0.1])  # of eq. (5)
 MAX_PARTICLES, MIN_PARTICLES = 3_000, 100
 BIN = 0.5  # metres, and as a chord of the direction of view
 
-# From beside the bed of 101 out of the door, and to the left.
-OUT_OF_101 = (
-    (3.3, 4.2, 200), (3.2, 3.6, 225), (3.05, 3.0, 258), (3.05, 2.2, 268),
-    (3.05, 1.4, 262), (2.9, 0.9, 225), (2.6, 0.85, 180), (2.1, 0.85, 180),
-)  # fmt: skip
-FRAMES = 30
 RUNS = range(1, 8)  # a run's seed is 10,000 and its number
 
 # One frame of a run: its particles `(n, 6)`, their weights `(n,)`, and how many bins they fill once resampled.
@@ -34,8 +28,9 @@ Round = namedtuple("Round", "particles weights bins")
 
 
 free_space = functools.cache(lambda: FreeSpace(hotel_map()))
+# A depth image of the camera, and the map, on 20 x 15 pixels.
+coarse = functools.partial(subsample_depth, camera=CAMERA, coarse=COARSE)
 coarse_renderer = functools.cache(lambda: DepthRenderer(hotel_map(), COARSE))
-leaving_101 = functools.cache(lambda: record(walk(OUT_OF_101, FRAMES), seed=10_002))
 
 
 def inside_furniture(positions: np.ndarray) -> np.ndarray:
@@ -46,11 +41,6 @@ def inside_furniture(positions: np.ndarray) -> np.ndarray:
 def distance_to_either(states: np.ndarray, true: np.ndarray) -> np.ndarray:
     """Return the distances `(2, N)` [m] on the floor of states `(N, 6)` from the camera and from its double."""
     return np.array([np.hypot(*(states[:, :2] - true[:2] - offset[:2]).T) for offset in (0 * ALIKE, ALIKE)])
-
-
-def coarse(depth: np.ndarray) -> np.ndarray:
-    """Return a depth image of the camera on 20 x 15 pixels."""
-    return subsample_depth(depth, CAMERA, COARSE)
 
 
 def start_anywhere(n: int, gravity: np.ndarray, rng: np.random.Generator) -> np.ndarray:

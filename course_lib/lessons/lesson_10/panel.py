@@ -6,7 +6,8 @@ from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.lessons.lesson_10.figures import BESIDE, EVENT, draw_camera, draw_hotel, style
-from course_lib.lessons.lesson_10.narrowing import FRAMES, MAX_PARTICLES, RUNS, leaving_101, narrow, shares
+from course_lib.lessons.lesson_10.hotel import FRAMES, leaving_101
+from course_lib.lessons.lesson_10.narrowing import MAX_PARTICLES, RUNS, narrow, shares
 from course_lib.lessons.lesson_10.trials import GOALS, KIDNAPPED, PERSON, alarms, running_mean, traces
 from course_lib.plots import figures
 

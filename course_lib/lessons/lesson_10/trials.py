@@ -15,45 +15,19 @@ from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
 from course_lib.depth_mcl.localizer import NoMeasurementWarning
 from course_lib.experiments.intervals import wilson_percent
 from course_lib.lessons.kit.progress_bar import progress
-from course_lib.lessons.lesson_10.hotel import ALIKE, CAMERA, Recording, hotel_map, record, walk
-from course_lib.lessons.lesson_10.narrowing import OUT_OF_101, leaving_101
+from course_lib.lessons.lesson_10 import hotel
+from course_lib.lessons.lesson_10.hotel import CAMERA, Recording, hotel_map, leaving_101, record, walk
 from course_lib.paths import data_path
 from course_lib.rendering.renderer import DepthRenderer
 
 PARTICLES, SEARCH = 150, {"least": 200, "most": 2_000}  # of the filter and of the search: the hotel is small
 SEARCHED, NEAR = 24, 0.2  # frames of the walk out of 101, metres
 
-# Walks, as corners [x, y, yaw in degrees].
-ON_A_WAGON = ((1.2, 0.9, 5), (2.8, 0.8, -5))
-IN_THE_CORRIDOR = ((1.2, 0.9, 5), (3.6, 0.8, -5))
-IN_103 = ((8.7, 2.3, 60), (9.0, 2.5, 100), (8.9, 2.6, 120))
-IN_101 = ((3.3, 4.2, 200), (3.2, 3.6, 225))
-IN_102 = ((7.3, 4.2, 200), (7.2, 3.6, 225))
-TO_THE_LIFT = ((6.0, 0.9, 10), (8.0, 0.7, 0))
-ALONG = ((1.0, 0.9, 5), (4.0, 0.8, -5), (7.5, 0.8, 5))
-TO_AN_OPEN_DOOR = ((9.5, 0.8, 170), (7.5, 0.8, 178), (6.5, 0.8, 120), (6.9, 0.9, 90), (7.0, 0.9, 90))
-
-
-def carried_away() -> Recording:
-    """Record ten frames on a wagon along the corridor, then twenty in 103."""
-    return record(np.concatenate([walk(ON_A_WAGON, 10, sway=0), walk(IN_103, 20, sway=0)]), 10_001)
-
-
-def carried_next_door() -> Recording:
-    """Record the walk out of 101. After eight frames the camera is at the same place in 102; nothing was covered."""
-    return record(walk(OUT_OF_101, 32) + np.outer(np.arange(32) >= 8, [*ALIKE, 0, 0, 0]), 10_003)
-
-
-def into_102() -> Recording:
-    """Record a walk along the corridor to the open door of 102."""
-    return record(walk(TO_AN_OPEN_DOOR, 20), 10_004)
-
-
 BEFORE, COVERED, AFTER = 6, 4, 8
 KIDNAPPINGS = {
-    "corridor to 103": (IN_THE_CORRIDOR, IN_103),
-    "103 to corridor": (IN_103, TO_THE_LIFT),
-    "corridor to 102": (TO_THE_LIFT, IN_102),
+    "corridor to 103": (hotel.IN_THE_CORRIDOR, hotel.IN_103),
+    "103 to corridor": (hotel.IN_103, hotel.TO_THE_LIFT),
+    "corridor to 102": (hotel.TO_THE_LIFT, hotel.IN_102),
 }
 
 
@@ -105,7 +79,7 @@ def search_run() -> list[PoseCandidates]:
 # lost: `(T,)` bool, whether the refined pose cannot be right.
 Trace = namedtuple("Trace", "scores lost")
 PERSON, KIDNAPPED = range(10, 16), 24  # frames
-GOALS = {"to 103": IN_103, "to 101": IN_101, "to the lift": TO_THE_LIFT}
+GOALS = {"to 103": hotel.IN_103, "to 101": hotel.IN_101, "to the lift": hotel.TO_THE_LIFT}
 
 
 @functools.cache
@@ -113,7 +87,7 @@ def traces() -> dict[str, Trace]:
     """Return for each of `GOALS` the scores along the corridor and then there."""
     found = {}
     for k, (name, goal) in enumerate(progress(GOALS.items(), "recording scores", len(GOALS))):
-        recording = record(np.concatenate([walk(ALONG, KIDNAPPED), walk(goal, 8)]), 10_011 + k)
+        recording = record(np.concatenate([walk(hotel.ALONG, KIDNAPPED), walk(goal, 8)]), 10_011 + k)
         for number in PERSON:  # 0.8 m in front of the camera, 16 columns wide
             left = 8 * (number - PERSON.start) - 8
             recording.depths[number, :, max(left, 0) : left + 16] = 0.8

@@ -21,20 +21,11 @@ def by_loops(free, cell, u):
     return [[cell * (c + x), cell * (r + y)] for (r, c), (_, x, y) in zip(chosen, u, strict=True)]
 
 
-def by_argwhere(free, cell, u):
-    corners = np.argwhere(free)[np.floor(u[:, 0] * free.sum()).astype(int)]
-    return ((corners[:, ::-1] + u[:, 1:]) * cell).astype(np.float32)
-
-
 def means(scores, share):
     found = [scores[0]]
     for score in scores[1:]:
         found.append(found[-1] if np.isnan(score) else share * score + (1 - share) * found[-1])
     return np.array(found)
-
-
-def by_list(scores, short, long):
-    return [float(max(0, (u - s) / u)) for s, u in zip(means(scores, short), means(scores, long), strict=True)]
 
 
 def by_slices(bins, least):
@@ -81,8 +72,15 @@ def by_counting(bins, miss, probability):
 
 
 ANSWERS = {
-    "10.1": [by_running_sum, by_loops, by_argwhere],
-    "10.2": [by_list, lambda scores, short, long: np.clip(1 - means(scores, short) / means(scores, long), 0, None)],
+    "10.1": [
+        by_running_sum,
+        by_loops,
+        lambda f, c, u: np.float32((np.argwhere(f)[np.floor(u[:, 0] * f.sum()).astype(int), ::-1] + u[:, 1:]) * c),
+    ],
+    "10.2": [
+        lambda s, a, b: [float(max(0, (u - v) / u)) for v, u in zip(means(s, a), means(s, b), strict=True)],
+        lambda s, a, b: np.clip(1 - means(s, a) / means(s, b), 0, None),
+    ],
     "10.3": [by_slices, by_while],
     "10.4": [by_lists, by_striking_out, lambda *given: np.array(by_lists(*given))],
     "10.5": [by_counting],
