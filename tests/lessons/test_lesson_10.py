@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from course_lib.beyond.lost_and_found.adaptive_count import kld_count
 from course_lib.lessons.lesson_10.hotel import ALIKE, OUT_OF_101, carried_next_door, record, walk
-from course_lib.lessons.lesson_10.narrowing import MAX_PARTICLES, MIN_PARTICLES, narrow, shares
+from course_lib.lessons.lesson_10.narrowing import MAX_PARTICLES, MIN_PARTICLES, kld_count, narrow, shares
 from course_lib.lessons.lesson_10.trials import KIDNAPPED, PERSON, Trace, alarms, follow, traces
 
 

@@ -49,18 +49,14 @@ def lost_since(scores, limit, patience):
 
 
 def scores_with_dips(rng):
-    """Scores with two short dips and, mostly, one long one; the dips alone add up to the patience or more.
-
-    The long dip is at the start, in the middle, complete with the last frame, one frame too short at the end, or left
-    out. The first short dip ends with a score equal to the limit, which is not below it.
-    """
+    """Scores with two short dips and, mostly, a long one: at the start, in the middle, or at the end, or cut off there."""
     patience, n, limit = int(rng.integers(2, 6)), int(rng.integers(40, 61)), rng.uniform(0.3, 0.6)
     scores = limit + rng.uniform(0.01, 0.2, size=n)
     low = limit - rng.uniform(0.01, 0.2, size=n)
     start = rng.choice([0, 30, n - patience, n - patience + 1, n], p=[0.2, 0.2, 0.3, 0.2, 0.1])
     for first, length in ((8, patience - 1), (18, patience - 1), (start, patience + int(rng.integers(0, 3)))):
         scores[first : first + length] = low[first : first + length]
-    scores[8 + patience - 1] = limit
+    scores[8 + patience - 1] = limit  # which is not below it
     return scores, limit, patience
 
 

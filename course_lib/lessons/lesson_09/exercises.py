@@ -14,10 +14,6 @@ def particles_for(n, d, d_new):
     return (n ** (1 / d)) ** d_new
 
 
-def number_and_dimensions(rng):
-    return tuple(rng.integers([20, 1, 1], [1000, 7, 7]).tolist())
-
-
 def mean_rotation(rotations, w):
     """The rotation R (3, 3) with sum_i w_i Log(R' R_i) = 0."""
     # Where am I pulled, seen from here? Go there; look again.
@@ -106,11 +102,6 @@ def points_on_walls(rng):
     return *walls_at(angles[which], away, rng, rng.uniform(-0.06, 0.06, 2), turn, before), away, scale
 
 
-def two_walls_and_a_person(rng):
-    points = np.array([[2.1, 0.5], [2.1, -0.5], [1.0, 0.0], [0.5, 1.0], [-0.5, 1.0]])
-    return points, np.repeat(np.eye(2), [3, 2], axis=0), np.array([2.0, 2.0, 2.0, 1.0, 1.0]), 0.1
-
-
 def a_large_turn(rng):
     """Fifteen degrees and four decimetres, nobody in the way: the first steps' shifts turn with the later steps."""
     angles, offsets = np.repeat(np.deg2rad([10.0, 100.0, 190.0]), 8), np.full(24, 3.0)
@@ -119,7 +110,7 @@ def a_large_turn(rng):
 
 # fmt: off
 EXERCISES = [
-    Exercise("09.1", particles_for, number_and_dimensions, "warm-up", cases={
+    Exercise("09.1", particles_for, lambda rng: tuple(rng.integers([20, 1, 1], [1000, 7, 7]).tolist()), "warm-up", {
         "fewer dimensions": lambda rng: (200, 3, 2),
         "the same dimension": lambda rng: (int(rng.integers(20, 1000)), 4, 4),
     }, mistakes="""
@@ -188,7 +179,9 @@ EXERCISES = [
         Your second number is in percent. Give a share between 0 and 1.
     """),
     Exercise("09.4", fit_motion, points_on_walls, "challenge", tolerance=1e-4, cases={
-        "two walls and a person": two_walls_and_a_person, "a large turn": a_large_turn,
+        "two walls and a person": lambda rng: (np.array([[2.1, 0.5], [2.1, -0.5], [1, 0], [0.5, 1], [-0.5, 1]]),
+                                               np.repeat(np.eye(2), [3, 2], axis=0), np.array([2.0, 2, 2, 1, 1]), 0.1),
+        "a large turn": a_large_turn,
     }, mistakes="""
         motion - np.linalg => motion + np.linalg and also 40 => 10
         motion - np.linalg => motion + np.linalg and also 40 => 20

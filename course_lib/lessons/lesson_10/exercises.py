@@ -82,12 +82,6 @@ def clouds_of_states(rng):
     return rng.permutation(states), rng.permutation(np.linspace(0.2, 0.95, len(states))), 0.6, 0.35
 
 
-def at_one_spot(rng):
-    """Two states look ahead, on either side of 0, and two look back, on either side of pi."""
-    states = np.column_stack([np.zeros((4, 2)), [0.1, -0.1, 3.1, -3.1]])
-    return states, rng.permutation([0.9, 0.8, 0.6, 0.5]), 0.5, 0.3
-
-
 def search_numbers(bins, miss, probability):
     """Least number of even draws, and the KLD error [nats], for a building of so many equally likely bins."""
     from scipy.stats import norm
@@ -97,10 +91,6 @@ def search_numbers(bins, miss, probability):
     share = 2 / (9 * (bins - 1))
     bracket = 1 - share + np.sqrt(share) * norm.ppf(probability)
     return least, (bins - 1) / (2 * least) * bracket**3
-
-
-def buildings(rng):
-    return int(10 ** rng.uniform(0.7, 4)), float(10 ** rng.uniform(-3, -0.7)), float(rng.uniform(0.9, 0.999))
 
 
 # fmt: off
@@ -181,7 +171,8 @@ EXERCISES = [
                                              np.array([0.7, 0.9, 0.5, 0.6]), 0.5, 0.3),
         "exactly at the limit": lambda rng: (np.array([[1.0, 2.0, 0.4], [1.5, 2.0, 0.4], [1.5, 2.25, 0.4]]),
                                              np.array([0.9, 0.5, 0.4]), 0.5, 0.3),
-        "ahead and back": at_one_spot,
+        "ahead and back": lambda rng: (np.column_stack([np.zeros((4, 2)), [0.1, -0.1, 3.1, -3.1]]),
+                                       rng.permutation([0.9, 0.8, 0.6, 0.5]), 0.5, 0.3),
         "one state alone": lambda rng: (np.array([[1.0, 2.0, 3.0]]), np.array([0.7]), 0.5, 0.3),
     }, mistakes="""
         states[kept, => states[kept[:1],
@@ -206,7 +197,9 @@ EXERCISES = [
         return np.array(kept) => return np.sort(kept)
         The right places, but sorted by index. The best comes first.
     """),
-    Exercise("10.5", search_numbers, buildings, "challenge", cases={
+    Exercise("10.5", search_numbers, lambda rng: (
+        int(10 ** rng.uniform(0.7, 4)), float(10 ** rng.uniform(-3, -0.7)), float(rng.uniform(0.9, 0.999)),
+    ), "challenge", cases={
         "two bins with a whole number": lambda rng: (2, 0.25, 0.99),
     }, mistakes="""
         np.log(miss) / np.log(1 - 1 / bins) => -np.log(miss) * bins

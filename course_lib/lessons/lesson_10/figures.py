@@ -167,10 +167,9 @@ def evidence(run: Sequence[PoseCandidates]) -> Figure:
 
 
 def trade_off(ratios: np.ndarray) -> tuple[Figure, list[tuple[float, float, float, list[int | None]]]]:
-    """False alarms, and how late kidnappings are noticed, for ratios of the alarm.
+    """False alarms, and how late kidnappings are noticed, for ratios of the alarm; and the rows that are drawn.
 
-    Return also rows of a ratio, its false alarms [%] by the score alone and with the second condition, and the delays
-    [frames] of the three kidnappings.
+    A row: ratio, false alarms [%] by the score alone and with the second condition, delays of the kidnappings [frames].
     """
     figure, (left, right) = new_figure(1, 2, size=(9.4, 3.0))
     rows = []

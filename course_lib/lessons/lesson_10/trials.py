@@ -32,10 +32,7 @@ KIDNAPPINGS = {
 
 
 def follow(recording: Recording, seed: int, closed: tuple = (), until: int | None = None) -> Iterator[RecoveryEstimate]:
-    """Yield what `RecoveringLocalizer` finds in each frame (up to frame `until`) of a recording whose start it knows.
-
-    closed: rooms whose door is shut on the map.
-    """
+    """Yield what `RecoveringLocalizer` finds on a recording whose start it knows. closed: doors shut on the map."""
     with DepthRenderer(hotel_map(*closed), CAMERA) as renderer, warnings.catch_warnings():
         warnings.simplefilter("ignore", NoMeasurementWarning)  # covered on purpose
         localizer = RecoveringLocalizer(renderer, PARTICLES, seed=seed, **SEARCH)
@@ -108,9 +105,9 @@ def running_mean(scores: np.ndarray, share: float) -> np.ndarray:
 def alarms(
     trace: Trace, ratio: float, short: float = 0.4, long: float = 0.03, cannot_be_right: bool = False
 ) -> tuple[np.ndarray, int, int | None]:
-    """Return the frames with an alarm `(T,)` bool, how many are false, and the delay after the kidnapping or None.
+    """Return the frames `(T,)` bool with an alarm, how many alarms are false, and the right one's delay or None.
 
-    The short mean lies below `ratio` of the long one. cannot_be_right: the pose must be impossible, too.
+    An alarm needs a short mean below `ratio` of the long one, and an impossible pose if `cannot_be_right`.
     """
     raised = running_mean(trace.scores, short) < ratio * running_mean(trace.scores, long)
     raised &= trace.lost | (not cannot_be_right)
