@@ -49,7 +49,7 @@ def lost_since(scores, limit, patience):
 
 
 def scores_with_dips(rng):
-    """Scores with two short dips and, mostly, a long one: at the start, in the middle, or at the end, or cut off there."""
+    """Scores with two short dips and, mostly, a long one: at the start, in the middle, at the end, or cut off there."""
     patience, n, limit = int(rng.integers(2, 6)), int(rng.integers(40, 61)), rng.uniform(0.3, 0.6)
     scores = limit + rng.uniform(0.01, 0.2, size=n)
     low = limit - rng.uniform(0.01, 0.2, size=n)

@@ -27,8 +27,8 @@ SEED = 10_001  # a tuning seed: what is reported comes from stored results
 def cloud_density(n: int, dimensions: int, rng: np.random.Generator) -> tuple[int, float, float]:
     """Return how densely normal clouds of `n` particles fill so many dimensions at their middle.
 
-    Return the dimensions; how many particles lie within half a sigma in the mean over many clouds, n P(chi^2 <= 1/4);
-    and how far the nearest is, in sigmas: the median over 400 clouds.
+    Return the dimensions, the mean number of particles within half a sigma, n P(chi^2 <= 1/4), and the distance of the
+    nearest in sigmas (median over 400 clouds).
     """
     lengths = np.linalg.norm(rng.standard_normal((400, n, dimensions)), axis=-1)
     return dimensions, n * chi2.cdf(0.25, dimensions), float(np.median(lengths.min(axis=1)))
@@ -38,9 +38,8 @@ def cloud_density(n: int, dimensions: int, rng: np.random.Generator) -> tuple[in
 hand_run = functools.cache(lambda: read_sequence(data_path("corridor/hand")))
 levels = functools.cache(lambda: pyramid(DepthRenderer(corridor_map(), hand_run().camera())))
 
-# What a filter made of T frames: estimates, statuses, errors [m] and [degrees] (T,), deviations and what the filter
-# expects of them (T, 6). Deviations lead from the estimate to the truth: metres along the world's axes, radians about
-# the body's.
+# Estimates, statuses, errors [m] and [degrees] (T,), deviations from the estimate to the truth and their expected
+# sigmas (T, 6): metres along the world's axes, radians about the body's.
 Track = namedtuple("Track", "estimates statuses position rotation deviations error_sigmas")
 
 
