@@ -82,10 +82,10 @@ def refinement_panel() -> Panel:
             f"The map as seen after {k} steps, how far measured points lie off its surface, and the error over "
             f"{STEPS} steps, from a start {forward:.2f} m forward, {left:.2f} m left, turned by {turned:.0f} degrees."
         )
-        off = f"{position[k]:.3f} m and {rotation[k]:.1f} degrees off"
-        off += f"; median |r| {1000 * np.nanmedian(np.abs(residuals[k])):.0f} mm"
+        now = f"{position[k]:.3f} m and {rotation[k]:.1f} degrees off"
+        now += f"; median |r| {1000 * np.nanmedian(np.abs(residuals[k])):.0f} mm"
         end = f"{position[-1]:.3f} m, {rotation[-1]:.1f} degrees"
-        return Drawing(live.png(), alt, f"step {k}: {off};  after {STEPS} steps: {end}")
+        return Drawing(live.png(), alt, f"step {k}: {now};  after {STEPS} steps: {end}")
 
     return Panel("09 Gauss-Newton", CONTROLS, draw, actions=ACTIONS)
 
