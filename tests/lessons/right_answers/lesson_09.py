@@ -33,8 +33,8 @@ def in_the_world(rotations, w):
 
 def by_pseudo_inverse(errors, covariances):
     pairs = list(zip(errors, covariances, strict=True))
-    inside = sum(e[k] ** 2 <= 9 * c[k, k] for e, c in pairs for k in range(len(e)))
-    return [sum(e @ np.linalg.pinv(c, rcond=1e-15) @ e for e, c in pairs) / errors.size, inside / errors.size]
+    inside = np.mean([e[k] ** 2 <= 9 * c[k, k] for e, c in pairs for k in range(len(e))])
+    return [sum(e @ np.linalg.pinv(c, rcond=1e-15) @ e for e, c in pairs) / errors.size, inside]
 
 
 def by_inverse(e, c):
@@ -72,9 +72,9 @@ ANSWERS = {
         by_vectors,
         until_still,
         in_the_world,
-        lambda rot, w: by_vectors(rot, w, start=-1),
-        lambda rot, w: by_vectors(rot, w).round(9),
-        lambda rot, w: by_vectors(rot, w, start=int(w.argmax())).tolist(),
+        lambda rotations, w: by_vectors(rotations, w, start=-1),
+        lambda rotations, w: by_vectors(rotations, w).round(9),
+        lambda rotations, w: by_vectors(rotations, w, start=int(w.argmax())).tolist(),
     ],
     "09.3": [by_pseudo_inverse, by_inverse],
     "09.4": [walls, by_scipy, lambda *given: np.array(walls(*given, steps=25), dtype=np.float32)],
