@@ -1,129 +1,104 @@
-"""The robot's way from "somewhere in this room" to millimetres, at one place: what each stage sees and says."""
+"""The robot's way from "somewhere in this room" to millimetres: each stage at one place, wrong starts, many places."""
 
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate
 from course_lib.depth_mcl.evaluation import pose_errors
+from course_lib.experiments import finale
 from course_lib.experiments.finale import LEVEL_SIGMA, REACHED, follow, mean_score, start_state, starts_of
 from course_lib.geometry import optical_pose, wrap_angle
-from course_lib.lessons.lesson_19.world import hidden, world
+from course_lib.lessons.lesson_19.exercises import start_knowledge
+from course_lib.lessons.lesson_19.world import AROUND, generator, hidden, world
+from course_lib.paths import data_path
+from course_lib.simulation.room.finale_data import SEED
+from course_lib.simulation.room.look_alike_recording import measurement_poses
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 
 FILTER_SEED = 1
-ON_THE_FLOOR = (0, 1, 5)  # of a state: x, y, yaw, what a semantic pose tells
-MAX_KEPT = 64
-STAGES = ("photographing two panoramas", "finding objects, places and the pose", "taking depth images", "the filter")
+_kept: dict[tuple, "Journey"] = {}
 
 
 class Journey(NamedTuple):
-    """One place, from beginning to end."""
+    """All stages at one place."""
 
-    pose: np.ndarray
-    """`(3,)` where the robot is: x, y, heading."""
-    images: tuple[np.ndarray, np.ndarray]
-    """Upper and lower panorama, `(H, W, 3)` BGR."""
+    pose: np.ndarray  # (3,) of the robot: x, y, heading
+    images: list[np.ndarray]  # upper and lower panorama, (H, W, 3) BGR
     found: Localization
-    states: np.ndarray
-    """`(3, 6)` where the depth camera is at each image."""
+    states: np.ndarray  # (3, 6) of the depth camera at each image
     depths: list[np.ndarray]
-    starts: list[Pose2D]
-    """Of the depth filter: the semantic pose, or up to three alternatives."""
-    runs: list[list[AnnealedEstimate]]
-    """Of every start: an estimate for each depth image."""
+    starts: list[Pose2D]  # of the depth filter: the semantic pose, or up to three alternatives
+    runs: list[list[AnnealedEstimate]]  # for each start, an estimate for each depth image
 
     @property
     def best(self) -> list[AnnealedEstimate] | None:
-        """The run that explains its images best; None where there was no start."""
+        """Return the run that explains its images best, or None if there was no start."""
         return max(self.runs, key=mean_score) if self.runs else None
 
     @property
     def semantic_error(self) -> tuple[float, float] | None:
-        """Metres and degrees of the semantic pose; None where none was given out."""
+        """Return metres and degrees of the semantic pose, or None if there is no semantic pose."""
         return None if self.found.pose is None else plane_error(self.found.pose, self.pose)
 
     @property
     def depth_error(self) -> tuple[float, float] | None:
-        """Metres (in space) and degrees of the last estimate of the best run; None without one."""
+        """Return metres (in space) and degrees of the best run's last estimate, or None if there is no run."""
         return None if self.best is None else state_error(self.best[-1].state, self.states[-1])
 
     @property
     def reached(self) -> bool:
-        """Whether it ended within 3 cm and 1 degree."""
-        return self.depth_error is not None and is_reached(self.depth_error)
-
-
-_kept: dict[tuple, Journey] = {}
+        """Return whether the best run ended within 3 cm and 1 degree."""
+        return self.best is not None and is_reached(self.depth_error)
 
 
 def plane_error(found: Pose2D, true_pose: np.ndarray) -> tuple[float, float]:
-    """How far a pose on the floor is off: metres, degrees."""
+    """Return how far a pose on the floor is off: metres, degrees."""
     turned = abs(float(wrap_angle(found.theta - true_pose[2])))
     return float(np.hypot(found.x - true_pose[0], found.y - true_pose[1])), float(np.rad2deg(turned))
 
 
 def state_error(state: np.ndarray, true_state: np.ndarray) -> tuple[float, float]:
-    """How far a state `(6,)` is off: metres in space, degrees of the rotation between the two."""
+    """Return how far a state `(6,)` is off: metres in space, degrees of the rotation between the two."""
     position, rotation = pose_errors(optical_pose(state), optical_pose(true_state))
     return float(position), float(np.rad2deg(rotation))
 
 
 def is_reached(error: tuple[float, float]) -> bool:
-    """Whether an error is within 3 cm and 1 degree."""
+    """Return whether an error is within 3 cm and 1 degree."""
     return error[0] <= REACHED[0] and error[1] <= REACHED[1]
 
 
 def journey(
-    x: float,
-    y: float,
-    heading_deg: float,
-    hidden_share: float = 0.0,
-    lens_cap: bool = False,
-    say: Callable[[str], None] | None = None,
+    x: float, y: float, heading: float, hidden_share: float = 0, lens_cap: bool = False, say: Callable = lambda _: None
 ) -> Journey:
-    """Everything that happens at a place; metres, degrees. The last ones are kept: a second look costs nothing.
+    """Return what happens at a place (metres, degrees). It is kept, so that a second look costs nothing.
 
-    hidden_share: of the panoramas' columns that show nothing. lens_cap: on the depth camera, which then measures
-    nothing. say: told of each stage before it begins.
+    hidden_share: of the panoramas' columns. lens_cap: the depth camera measures nothing. say: is told of each stage.
     """
-    key = (float(x), float(y), float(heading_deg), float(hidden_share), lens_cap)
+    key = (float(x), float(y), float(heading), float(hidden_share))
     if key not in _kept:
-        if len(_kept) == MAX_KEPT:
-            del _kept[next(iter(_kept))]
-        _kept[key] = _travelled(*key, say or (lambda text: None))
-    return _kept[key]
-
-
-def _travelled(
-    x: float, y: float, heading_deg: float, hidden_share: float, lens_cap: bool, say: Callable[[str], None]
-) -> Journey:
-    here, pose = world(), np.array([x, y, np.deg2rad(heading_deg)])
-    if lens_cap:  # the panoramas know nothing of it
-        seen = journey(x, y, heading_deg, hidden_share, False, say)
-        return seen._replace(depths=[np.full_like(depth, np.nan) for depth in seen.depths], runs=[])
-    say(f"1 of 4: {STAGES[0]}")
-    images = here.photographs(pose)
-    if hidden_share:
-        images = tuple(hidden(image, hidden_share) for image in images)
-    say(f"2 of 4: {STAGES[1]}")
-    found = here.localizer.localize(*images)
-    say(f"3 of 4: {STAGES[2]}")
-    states, depths = here.depth_images(pose)
-    say(f"4 of 4: {STAGES[3]}")
-    starts = starts_of(found, here.scene_map)
-    runs = [follow(here.renderer, start_state(start), depths, FILTER_SEED) for start in starts]
-    return Journey(pose, images, found, states, depths, starts, runs)
+        here, pose = world(), np.array([x, y, np.deg2rad(heading)])
+        say("1 of 4: photographing two panoramas")
+        images = [hidden(image, hidden_share) for image in here.photographs(pose)]
+        say("2 of 4: finding objects, places and the pose")
+        found = here.localizer.localize(*images)
+        say("3 of 4: taking depth images")
+        states, depths = here.depth_images(pose)
+        say("4 of 4: the filter")
+        starts = starts_of(found, here.scene_map)
+        runs = [follow(here.renderer, start_state(start), depths, FILTER_SEED) for start in starts]
+        _kept[key] = Journey(pose, images, found, states, depths, starts, runs)
+    one = _kept[key]
+    return one._replace(depths=[np.full_like(depth, np.nan) for depth in one.depths], runs=[]) if lens_cap else one
 
 
 def start_covariance(covariance: np.ndarray) -> np.ndarray:
-    """Return the covariance `(6, 6)` of `start_state`: a semantic pose's `(3, 3)`, and how high and level it stands."""
-    height, level = LEVEL_SIGMA
-    known = np.diag([0.0, 0.0, height**2, level**2, level**2, 0.0])
-    known[np.ix_(ON_THE_FLOOR, ON_THE_FLOOR)] = covariance
-    return known
+    """Return the covariance `(6, 6)` of `start_state`: of a semantic pose `(3, 3)`, and of how the robot stands."""
+    return start_knowledge(covariance, LEVEL_SIGMA[0], np.rad2deg(LEVEL_SIGMA[1]))
 
 
 def joined(
@@ -141,3 +116,36 @@ def joined(
     found = start + gain @ difference
     found[3:] = wrap_angle(found[3:])
     return found, (np.eye(6) - gain) @ covariance
+
+
+def random_places(n: int) -> list[tuple[float, float, float]]:
+    """Return the first n random places of the experiment in this room: x, y [m], heading [degrees]."""
+    poses = measurement_poses(world().room, 2 * n, SEED)[::2]  # there are two headings at each place
+    return [(float(x), float(y), float(np.rad2deg(heading))) for x, y, heading in poses]
+
+
+def misplaced(
+    places: Sequence[Journey], metres: float, degrees: float, repeats: int, rng: np.random.Generator
+) -> list[bool]:
+    """Start filters at every place in a random direction and turned to a side; return for each whether it arrived."""
+    arrived = []
+    for one in [place for place in places for _ in range(repeats)]:
+        direction, side = rng.uniform(0, 2 * np.pi), rng.choice([-1.0, 1.0])
+        off = [metres * np.cos(direction), metres * np.sin(direction), 0, 0, 0, side * np.deg2rad(degrees)]
+        last = follow(world().renderer, one.states[0] + off, one.depths, FILTER_SEED)[-1]
+        arrived.append(is_reached(state_error(last.state, one.states[-1])))
+    return arrived
+
+
+def turn_and_look(one: Journey) -> tuple[tuple[float, float], int, bool]:
+    """Turn the robot and look again until its pose is known: return metres and degrees, views, and whether it knows."""
+    here = world()
+    estimate, state, views = finale.look_around(
+        here.renderer, one.starts, one.pose, here.capture, generator(one.pose, AROUND)
+    )
+    return state_error(estimate.state, state), views, finale.is_known(estimate)
+
+
+def stored_result() -> dict:
+    """Return the result of `demo finale --seeds 1-10`: forty places in ten rooms that nobody here looked at."""
+    return json.loads(data_path("room/results/finale_1-10.json").read_text(encoding="utf-8"))
