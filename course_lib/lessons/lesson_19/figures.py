@@ -117,13 +117,14 @@ def stages_figure(one: Journey) -> Figure:
     )
 
 
-def basin_figure(
-    distances: dict[float, Sequence[bool]], headings: dict[float, Sequence[bool]], semantic: Sequence[tuple]
-) -> Figure:
-    """Draw the share of filters that arrive over how far off they started, and how far off the semantic poses were."""
+def basin_figure(wrong: dict[tuple, Sequence[bool]], semantic: Sequence[tuple]) -> Figure:
+    """Draw the share of filters that arrive over how far off they started, and how far off the semantic poses were.
+
+    wrong: (metres, degrees) -> whether each filter arrived. semantic: metres and degrees of each semantic pose.
+    """
     figure, axes = figures.new_figure(1, 2, size=(9.0, 3.4))
-    names = ("start wrong by [m]", "start turned by [degrees]")
-    for k, (a, runs, name) in enumerate(zip(axes, (distances, headings), names, strict=True)):
+    for k, (a, name) in enumerate(zip(axes, ("start wrong by [m]", "start turned by [degrees]"), strict=True)):
+        runs = {amount[k]: arrived for amount, arrived in wrong.items() if amount[k]}
         shares = [np.mean(reached) for reached in runs.values()]
         ends = [wilson_percent(int(np.sum(reached)), len(reached)) for reached in runs.values()]
         away = np.abs(np.array(ends).T / 100 - shares)
