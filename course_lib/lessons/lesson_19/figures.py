@@ -48,14 +48,11 @@ def named_together(labels: Sequence[str], places: np.ndarray) -> list[tuple[list
 
     labels: n of them. places: `(n, 2)`, metres.
     """
-    groups: list[tuple[list[str], int]] = []
+    groups: dict[int, list[str]] = {}
     for k, label in enumerate(labels):
-        same = [names for names, first in groups if np.hypot(*(places[first] - places[k])) < SAME_PLACE_M]
-        if same:
-            same[0].append(label)
-        else:
-            groups.append(([label], k))
-    return groups
+        first = next((one for one in groups if np.hypot(*(places[one] - places[k])) < SAME_PLACE_M), k)
+        groups.setdefault(first, []).append(label)
+    return [(names, first) for first, names in groups.items()]
 
 
 def ellipse(covariance: np.ndarray, centre: Sequence[float]) -> np.ndarray:
@@ -70,8 +67,7 @@ def sensors_figure(one: Journey) -> Figure:
     """Draw what both sensors see from one place: the upper panorama with its objects, the depth image, the plan."""
     figure = figures.new_figure(size=(8.2, 5.3))[0]
     figure.clear()
-    grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 1.1])
-    above, image, plan = (figure.add_subplot(part) for part in (grid[0, :], grid[1, 0], grid[1, 1]))
+    above, image, plan = figure.subplot_mosaic("aa;ip", height_ratios=[1.0, 1.1]).values()
     small = one.images[0][::2, ::2]
     panorama(above, small, f"Upper panorama: {len(one.found.upper_detections)} objects found")
     above.set_ylim(0.80 * small.shape[0], 0.34 * small.shape[0])  # ceiling and tripod left out: the objects larger

@@ -15,17 +15,16 @@ from course_lib.simulation.room.scene import free_places
 
 STORY = {"x": 3.35, "y": 3.3, "heading": 65.0, "hidden": 0.0, "cap": False}
 """Where the lesson's robot stands. The panel starts there."""
-NO_PANORAMA, NO_DEPTH = np.full((320, 640, 3), 225, np.uint8), np.full((144, 176), np.nan)
-ZOOM = 25.0  # cm to each side of the true place
+OUTLINE = [[0, 1], [2, 1], [2, 3], [0, 3], [0, 1]]  # of a box (u_min, v_min, u_max, v_max)
+GREY, NO_DEPTH = np.full((320, 640, 3), 225, np.uint8), np.full((144, 176), np.nan)
 
 
 def anywhere_panel() -> Panel:
     """Place the robot, cover its sensors, press "Locate". A slider that moves redraws the plan and clears the rest."""
     figure = figures.new_figure(size=(9.0, 6.0))[0]
     figure.clear()
-    grid = figure.add_gridspec(2, 3, height_ratios=[1.0, 1.1])
-    above, plan, zoom, image = (figure.add_subplot(grid[k]) for k in ((0, slice(None)), (1, 0), (1, 1), (1, 2)))
-    picture = above.imshow(NO_PANORAMA, extent=(0, 1280, 640, 0))
+    above, plan, zoom, image = figure.subplot_mosaic("aaa;pzi", height_ratios=[1.0, 1.1]).values()
+    picture = above.imshow(GREY, extent=(0, 1280, 640, 0))
     above.set(title="Upper panorama and what was found on it", xlabel="column u [pixels]", ylabel="row v [pixels]")
     boxes = above.add_collection(LineCollection([], colors=figures.VERMILION, linewidths=1.2))
     above.set(xlim=(0, 1280), ylim=(640, 0))
@@ -37,15 +36,11 @@ def anywhere_panel() -> Panel:
     (arrow,) = plan.plot([], [], color=figures.BLACK, linewidth=2.2)
     (starts,) = plan.plot([], [], "s", color=figures.ORANGE, markerfacecolor="none", markersize=8)
     zoom.plot(0, 0, **TRUE_PLACE, linestyle="none", label="true")
-    semantic, filtered = (
-        (*zoom.plot([], [], marker, color=colour, label=label), *zoom.plot([], [], line, color=colour))
-        for marker, line, colour, label in (
-            ("s", "--", figures.ORANGE, "panoramas"),
-            ("o", "-", figures.BLUE, "depth filter"),
-        )
-    )
-    zoom.set(title="How far off", xlabel="x [cm]", ylabel="y [cm]", xlim=(-ZOOM, ZOOM), ylim=(-ZOOM, ZOOM))
-    zoom.set_aspect("equal")
+    semantic = [zoom.plot([], [], look, color=figures.ORANGE)[0] for look in ("s", "--")]
+    filtered = [zoom.plot([], [], look, color=figures.BLUE)[0] for look in ("o", "-")]
+    semantic[0].set_label("panoramas")
+    filtered[0].set_label("depth filter")
+    zoom.set(title="How far off", xlabel="x [cm]", ylabel="y [cm]", xlim=(-25, 25), ylim=(-25, 25), aspect="equal")
     zoom.legend(fontsize=7, loc="lower left")
     depth = figures.depth_image(image, NO_DEPTH, "Depth image, near is dark", (0.0, 5.0))
     live = LiveFigure(figure, [picture, depth, boxes, cone, robot, arrow, starts, *semantic, *filtered])
@@ -59,37 +54,30 @@ def anywhere_panel() -> Panel:
         robot.set_data([x], [y])
         arrow.set_data([x, ends[0, 1]], [y, ends[1, 1]])
         cone.set_data([ends[0, 0], x, ends[0, 2]], [ends[1, 0], y, ends[1, 2]])
-        boxes.set_segments([])
-        for line in (starts, *semantic, *filtered):
+        corners = [np.array(found.box)[OUTLINE] for found in one.found.upper_detections] if one else []
+        boxes.set_segments([box - [turn, 0] for box in corners for turn in (0, 1280)])  # one may cross the seam
+        picture.set_data(
+            cv2.resize(one.images[0], (640, 320), interpolation=cv2.INTER_AREA)[..., ::-1] if one else GREY
+        )
+        depth.set_data(np.ma.masked_invalid(one.depths[-1] if one else NO_DEPTH))
+        if one and not cap:
+            depth.set_clim(*np.nanpercentile(one.depths[-1], [1, 99]))
+        starts.set_data(*np.array([start[:2] for start in one.starts] if one else []).reshape(-1, 2).T)
+        answers = []
+        if one and one.found.pose is not None:
+            answers.append((semantic, np.array(one.found.pose[:2]) - one.pose[:2], one.found.covariance))
+        if one and one.best is not None:
+            last = one.best[-1]
+            answers.append((filtered, last.state[:2] - one.states[-1, :2], last.error_covariance))
+        for line in (*semantic, *filtered):
             line.set_data([], [])
-        picture.set_data(NO_PANORAMA)
-        depth.set_data(np.ma.masked_invalid(NO_DEPTH))
-        if one is not None:
-            show(one)
+        for (dot, ring), off, covariance in answers:
+            dot.set_data(*100 * off[:, None])
+            ring.set_data(*ellipse(1e4 * covariance[:2, :2], 100 * off))
         place = world().where(x, y)
         text = [f"robot at ({x:.2f}, {y:.2f}) m, heading {heading:.0f} degrees: {place}", *_told(one, place)]
         alt = f"The room from above with the robot, what it saw, and how far off it is. {text[1]}"
         return Drawing(live.png(), alt, "\n".join(text))
-
-    def show(one: Journey) -> None:
-        picture.set_data(cv2.resize(one.images[0], (640, 320), interpolation=cv2.INTER_AREA)[..., ::-1])
-        depth.set_data(np.ma.masked_invalid(one.depths[-1]))
-        if np.isfinite(one.depths[-1]).any():
-            depth.set_clim(*np.nanpercentile(one.depths[-1], [1, 99]))
-        corners = [
-            np.array(found.box)[[[0, 1], [2, 1], [2, 3], [0, 3], [0, 1]]] for found in one.found.upper_detections
-        ]
-        boxes.set_segments([box - [turn, 0] for box in corners for turn in (0, 1280)])  # one may cross the seam
-        starts.set_data([start.x for start in one.starts], [start.y for start in one.starts])
-        answers = []
-        if one.found.pose is not None:
-            answers.append((semantic, np.array(one.found.pose[:2]) - one.pose[:2], one.found.covariance))
-        if one.best is not None:
-            last = one.best[-1]
-            answers.append((filtered, last.state[:2] - one.states[-1, :2], last.error_covariance))
-        for (dot, ring), off, covariance in answers:
-            dot.set_data(*100 * off[:, None])
-            ring.set_data(*ellipse(1e4 * covariance[:2, :2], 100 * off))
 
     def locate(values: dict) -> dict:
         x, y, heading, hidden, cap = values.values()
@@ -99,7 +87,7 @@ def anywhere_panel() -> Panel:
         return {}
 
     def somewhere(values: dict) -> dict:
-        rng = np.random.default_rng(len(located))
+        rng = np.random.default_rng(len(located) + 1)
         (x, y), turn = free_places(world().room, 1, rng)[0], rng.uniform(-180, 180)
         return {"x": round(20 * x) / 20, "y": round(20 * y) / 20, "heading": float(5 * round(turn / 5))}
 

@@ -24,35 +24,19 @@ _kept: dict[tuple, "Journey"] = {}
 
 
 class Journey(NamedTuple):
-    """All stages at one place."""
+    """All stages at one place. Errors are (metres, degrees)."""
 
     pose: np.ndarray  # (3,) of the robot: x, y, heading
     images: list[np.ndarray]  # upper and lower panorama, (H, W, 3) BGR
     found: Localization
+    semantic_error: tuple[float, float] | None
     states: np.ndarray  # (3, 6) of the depth camera at each image
     depths: list[np.ndarray]
     starts: list[Pose2D]  # of the depth filter: the semantic pose, or up to three alternatives
     runs: list[list[AnnealedEstimate]]  # for each start, an estimate for each depth image
-
-    @property
-    def best(self) -> list[AnnealedEstimate] | None:
-        """Return the run that explains its images best, or None if there was no start."""
-        return max(self.runs, key=mean_score) if self.runs else None
-
-    @property
-    def semantic_error(self) -> tuple[float, float] | None:
-        """Return metres and degrees of the semantic pose, or None if there is no semantic pose."""
-        return None if self.found.pose is None else plane_error(self.found.pose, self.pose)
-
-    @property
-    def depth_error(self) -> tuple[float, float] | None:
-        """Return metres (in space) and degrees of the best run's last estimate, or None if there is no run."""
-        return None if self.best is None else state_error(self.best[-1].state, self.states[-1])
-
-    @property
-    def reached(self) -> bool:
-        """Return whether the best run ended within 3 cm and 1 degree."""
-        return self.best is not None and is_reached(self.depth_error)
+    best: list[AnnealedEstimate] | None  # the run that explains its images best
+    depth_error: tuple[float, float] | None  # in space, of the last estimate of the best run
+    reached: bool
 
 
 def plane_error(found: Pose2D, true_pose: np.ndarray) -> tuple[float, float]:
@@ -91,9 +75,14 @@ def journey(
         say("4 of 4: the filter")
         starts = starts_of(found, here.scene_map)
         runs = [follow(here.renderer, start_state(start), depths, FILTER_SEED) for start in starts]
-        _kept[key] = Journey(pose, images, found, states, depths, starts, runs)
-    one = _kept[key]
-    return one._replace(depths=[np.full_like(depth, np.nan) for depth in one.depths], runs=[]) if lens_cap else one
+        best = max(runs, key=mean_score, default=None)
+        errors = found.pose and plane_error(found.pose, pose), best and state_error(best[-1].state, states[-1])
+        reached = best is not None and is_reached(errors[1])
+        _kept[key] = Journey(pose, images, found, errors[0], states, depths, starts, runs, best, errors[1], reached)
+    if not lens_cap:
+        return _kept[key]
+    dark = [np.full_like(depth, np.nan) for depth in _kept[key].depths]
+    return _kept[key]._replace(depths=dark, runs=[], best=None, depth_error=None, reached=False)
 
 
 def start_covariance(covariance: np.ndarray) -> np.ndarray:
