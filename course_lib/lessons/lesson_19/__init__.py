@@ -17,5 +17,5 @@ from course_lib.lessons.lesson_19.stages import (
     state_error,
     stored_result,
     turn_and_look,
+    world,
 )
-from course_lib.lessons.lesson_19.world import world

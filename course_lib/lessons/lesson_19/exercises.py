@@ -90,8 +90,6 @@ EXERCISES = [
     Exercise("19.2", start_knowledge, tolerance=1e-9, inputs=lambda rng: (
         semantic_covariance(rng), float(rng.uniform(0.003, 0.03)), float(rng.uniform(0.2, 2.0)),
     ), mistakes="""
-        sigma_z**2, tilt**2, tilt**2 => sigma_z, tilt, tilt
-        A covariance holds squares: sigma_z and sigma_tilt go in squared.
         sigma_z**2, tilt**2, tilt**2, 0.0 => 0.0, sigma_z**2, tilt**2, tilt**2 and also [0, 1, 5] => [0, 1, 2]
         sigma_z**2, tilt**2, tilt**2, 0.0 => sigma_z**2, 0.0, tilt**2, tilt**2 and also [0, 1, 5] => [0, 1, 3]
         Theta is the yaw, and yaw is the last of the six. At which places of the state are x, y and yaw?
@@ -99,9 +97,8 @@ EXERCISES = [
         Place and heading are correlated: copy the numbers beside the diagonal, too.
         tilt**2, tilt**2 => 0.0, 0.0
         tilt**2, tilt**2 => tilt**2, 0.0
-        Roll and pitch are not exactly zero: the robot stands level to sigma_tilt in both.
         sigma_z**2 => 0.0
-        The height is missing: it is known to sigma_z, not exactly.
+        Height, roll and pitch are not known exactly: the robot stands to sigma_z, and level to sigma_tilt in both.
         return result => result[5, :2] = result[:2, 5] = 0.0; return result
         return result => result[5, :2] = 0.0; return result
         x and y are correlated with yaw, on both sides of the diagonal: some of these four numbers are missing.
@@ -120,8 +117,6 @@ EXERCISES = [
         1.96 => 1.645
         1.96 => 2.0
         z = 1 is the 68 % interval, 1.645 the 90 % one, 2.576 the 99 % one, and 2 is rounded. Take 1.96.
-        / (1 + z**2 / n) >= => >=
-        Wilson's lower end is divided by 1 + z^2 / n: that is missing.
     """),
     Exercise("19.4", carried, on_a_lever, "challenge", mistakes="""
         ... => return covariance.copy()

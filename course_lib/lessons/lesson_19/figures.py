@@ -10,8 +10,7 @@ from matplotlib.patches import Polygon
 from course_lib.experiments.finale import mean_score
 from course_lib.experiments.intervals import wilson_percent
 from course_lib.lessons.kit.display import described
-from course_lib.lessons.lesson_19.stages import Journey, state_error
-from course_lib.lessons.lesson_19.world import world
+from course_lib.lessons.lesson_19.stages import Journey, state_error, world
 from course_lib.plots import figures
 from course_lib.plots.panorama_drawing import class_style, draw_box, panorama
 from course_lib.plots.room_figures import draw_pose

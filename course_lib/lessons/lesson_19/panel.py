@@ -8,8 +8,7 @@ from course_lib.experiments.finale import mean_score
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Drawing, Panel, Slider, Switch
 from course_lib.lessons.lesson_19.figures import TRUE_PLACE, VIEW, draw_room, ellipse
-from course_lib.lessons.lesson_19.stages import Journey, journey, state_error
-from course_lib.lessons.lesson_19.world import world
+from course_lib.lessons.lesson_19.stages import Journey, journey, state_error, world
 from course_lib.plots import figures
 from course_lib.simulation.room.scene import free_places
 

@@ -90,7 +90,6 @@ EXERCISES = [
         raw / units_per_metre => raw // units_per_metre
         Yours are whole metres: `//` throws the rest away. Use `/`.
         np.nan => 0.0
-        np.nan => np.inf
         A hole is NaN: 0 would be a surface at the lens, and inf is a simulated ray that hit nothing.
     """),
     Exercise("20.2", resized_intrinsics, lambda rng: (some_k(rng), rng.choice([0.125, 0.25, 0.5, 2.0])), cases={
@@ -98,18 +97,14 @@ EXERCISES = [
         "the paper's camera": lambda rng: (np.array([[217.0, 0, 87.5], [0, 217.0, 71.5], [0, 0, 1]]), 0.25),
     }, mistakes="""
         scale * (k[:2, 2] + 0.5) - 0.5 => scale * k[:2, 2]
-        cx and cy are half a pixel off. The image's edge is at -0.5: measure from there, scale, come back.
         scale * (k[:2, 2] + 0.5) - 0.5 => scale * (k[:2, 2] + 0.5)
-        scale * (k[:2, 2] + 0.5) - 0.5 => scale * k[:2, 2] - 0.5
-        Go to the edge before you scale (add 0.5), and come back after it (subtract 0.5).
+        cx and cy are half a pixel off. The image's edge is at -0.5: add 0.5 before you scale, subtract 0.5 after it.
         resized[[0, 1], [0, 1]] *= scale => resized[[0, 1], [0, 1]] = scale * (k[[0, 1], [0, 1]] + 0.5) - 0.5
         The half pixel belongs to positions, cx and cy. A focal length is a length: it has no origin.
         resized[[0, 1], [0, 1]] *= scale => pass
         fx and fy are unchanged. They are in pixels too: with half the pixels they are half as long.
         resized[:2, 2] = scale * (k[:2, 2] + 0.5) - 0.5 => pass
         cx and cy are unchanged: they would lie outside the middle of the new image.
-        return resized => return np.vstack([resized[:1], k[1:]])
-        Your rows keep their size. The image shrinks in both directions: fy and cy, too.
         ... => return k * scale
         Only focal lengths and positions scale: a pinhole's K ends in [0, 0, 1].
         ... => return resized_intrinsics(k, 1 / scale)
@@ -155,8 +150,6 @@ EXERCISES = [
         There the error is least. The task asks for the *least baseline* whose error is still within the limit.
         2 * (reach - np.sqrt(reach**2 - distance**2)) => distance**2 / reach and also reach < distance => reach < 0
         Close: that is for far marks. Near the rig the angles are not small: keep 1 / cos(e)^2.
-        2 * (reach - np.sqrt(reach**2 - distance**2)) => distance**2 / np.sqrt(reach**2 - distance**2 / 4)
-        The derivative of tan(e) is 1 / cos(e)^2: yours has one cosine only.
         np.sqrt(2) * np.pi => np.pi
         Two rows are read, one on each image, and each is wrong on its own: their variances add.
         np.sqrt(2) * np.pi => 2 * np.pi

@@ -56,8 +56,8 @@ def panorama_pair(
         pair = recorded.pairs[STAND_IN_PAIR]
         images, objects = pair.images(), (pair.upper_objects, pair.lower_objects)
         detections = [exact_detections(*one)[0] for one in zip(objects, images, strict=True)]
-        name = "stand-in: the simulated room"
-        return PanoramaPair(name, *images, recorded.rig, *detections, room_map(), pair.pose)
+        given = "stand-in: the simulated room", *images, recorded.rig
+        return PanoramaPair(*given, *detections, room_map(), pair.pose)
     folder, images = Path(folder), []
     for side in ("upper", "lower"):
         if not (path := _only_one(folder, [f"{side}.png", f"{side}.jpg", f"{side}.jpeg"])):
@@ -69,8 +69,7 @@ def panorama_pair(
     if boxes is None and is_given(folder / "boxes.json"):
         boxes = folder / "boxes.json"
     detections = [view.detections for view in read_stereo_boxes(boxes).on(*images)] if boxes is not None else ([], [])
-    path = _only_one(folder, ["map.json", "map.csv"])
-    semantic_map = SemanticMap.load(path) if path else None
+    semantic_map = SemanticMap.load(path) if (path := _only_one(folder, ["map.json", "map.csv"])) else None
     return PanoramaPair(folder.name, *images, StereoRig(baseline), *detections, semantic_map, None)
 
 
@@ -96,15 +95,11 @@ def near_features(features: FeatureMatches) -> np.ndarray:
 
 
 def horizontal_ranges(
-    keypoints_upper: np.ndarray, keypoints_lower: np.ndarray, width: int, height: int, baseline: float
+    uv_upper: np.ndarray, uv_lower: np.ndarray, width: int, height: int, baseline: float
 ) -> np.ndarray:
-    """Return horizontal ranges `(k,)` in metres of matched features `(k, 2)`: rho = baseline / (tan e_l - tan e_u).
-
-    A match whose disparity is not positive gives infinity. Source: paper 2, section 2.4.
-    """
-    upper, lower = (azimuth_elevation_of_pixel(one, width, height)[1] for one in (keypoints_upper, keypoints_lower))
-    slope = np.tan(lower) - np.tan(upper)
-    return np.where(slope > 0, baseline / np.where(slope > 0, slope, 1.0), np.inf)
+    """Return ranges `(k,)` [m] of matched features `(k, 2)`: rho = baseline / (tan e_l - tan e_u) (paper 2, 2.4)."""
+    upper, lower = (azimuth_elevation_of_pixel(uv, width, height)[1] for uv in (uv_upper, uv_lower))
+    return baseline / (np.tan(lower) - np.tan(upper))
 
 
 def measured_objects(pair: PanoramaPair, matches: Sequence, baseline: float | None = None) -> list[MeasuredObject]:

@@ -49,13 +49,6 @@ def focal_length(ranges, distance):
     return np.sqrt((s[used] ** 2).sum() / (s[used] * y[used]).sum())
 
 
-def by_median(ranges, more, middle=0.5):
-    """The median over the pixels instead of a line. It is right if `more` is (range / distance)^2 - 1."""
-    square = squares(ranges.shape, middle)
-    used = np.isfinite(more) & (square > 0)
-    return np.sqrt(np.median(square[used] / more[used]))
-
-
 def a_wall(rng: np.random.Generator, corners: float = 1.0) -> tuple:
     """Draw a wall. corners: NaN if none of the four corners is measured."""
     focal, distance, shape = rng.uniform(8, 40), float(rng.uniform(0.8, 8.0)), tuple(rng.integers(6, 12, 2))
@@ -165,11 +158,8 @@ EXERCISES = [
         "the code is another": lambda rng: raw_frames(rng, (1, 32_001, 65_000)),
     }, mistakes="""
         ... => return 0
-        ... => return 65_535
-        0 and 65535 are the codes of many cameras, not of all. Let the frames tell: what repeats?
-        ... => return int(raw.min())
         ... => return int(raw.max())
-        The least or the greatest number need not be the code: look at what repeats.
+        0 and 65535 are the codes of many cameras, and the least or greatest number of some. Look at what repeats.
         ... => return int((raw == invalid_code(raw)).sum())
         That is how often the code occurs. Which number is it?
         ... => return float(np.median(raw))
@@ -186,12 +176,9 @@ EXERCISES = [
         Yours is metres a number. The task asks for numbers a metre.
         intercept / slope => intercept
         Your offset is in raw numbers. How many metres is that?
-        intercept / slope => -intercept / slope
-        The sign of the offset: it is positive where the camera reads too far.
         ... => return np.sum(numbers * distances) / np.sum(distances**2), 0.0
-        You force the line through zero. The camera has an offset: a line has two numbers.
         ... => return np.mean(numbers / distances), 0.0
-        A quotient mixes unit and offset: near the camera the offset weighs most. Fit a line.
+        You force the line through zero. The camera has an offset, and near the camera it weighs most. Fit a line.
         ... => return tuple(np.polyfit(numbers, distances, 1))
         You fit the distance over the numbers. The task asks for numbers a metre, so the other way round.
         slope, intercept / slope => intercept / slope, slope
@@ -202,33 +189,27 @@ EXERCISES = [
         "corners not measured": lambda rng: a_wall(rng, np.nan),
     }, mistakes="""
         squares(ranges.shape) => squares(ranges.shape, 0.0)
-        ... => return by_median(ranges, (ranges / distance) ** 2 - 1, middle=0.0)
+        ... => return np.sqrt(np.nanmedian(squares(ranges.shape, 0.0) / ((ranges / distance) ** 2 - 1)))
         Half a pixel off: pixel centres are at whole numbers, so the middle is at (width - 1) / 2.
         (ranges / distance) ** 2 - 1 => ranges / distance - 1
-        ... => return by_median(ranges, ranges / distance - 1)
+        ... => return np.sqrt(np.nanmedian(squares(ranges.shape) / (ranges / distance - 1)))
         Pythagoras: it is the *square* of range / distance that is 1 + (pixels / f)^2.
         used = np.isfinite(y) => used = np.ones(y.shape, bool)
         ... => return np.sqrt(np.median(squares(ranges.shape) / ((ranges / distance) ** 2 - 1)))
         Pixels without measurement (NaN), or the one on the axis (0/0), spoil it. Leave them out.
         ** 2 - 1 => ** 2
-        ... => return by_median(ranges, (ranges / distance) ** 2)
+        ... => return np.sqrt(np.nanmedian(squares(ranges.shape) / (ranges / distance) ** 2))
         The 1 is missing: (range / distance)^2 = 1 + (pixels / f)^2.
         (ranges / distance) ** 2 - 1 => ranges**2 - distance**2
         Yours changes with the wall's distance: divide the range by it first.
-        return np.sqrt => return 1 / np.sqrt
-        That is 1 / f.
         ... => return np.sqrt(squares(ranges.shape)[0, 0] / ((ranges[0, 0] / distance) ** 2 - 1))
         That corner need not have been measured. Use all pixels that were measured.
     """),
     Exercise("P4.4", bias_coefficients, readings, cases={"the SR4000": lambda rng: readings(rng, 9.993)}, mistakes="""
         4 * measured => 4 * true
         Your phase is of the true range. Later only the *measured* one is known: fit over that.
-        measured - true => true - measured
-        The other sign: the error is what the camera says minus what is true.
         4 * measured => measured
         Your wave goes round once within c / 2f. This error goes round four times.
-        / repeat => / 9.993
-        Your c / 2f is always 9.993 m: use the `repeat` that is given.
         2 * np.pi * 4 => 4
         The phase is in turns: np.sin takes radians.
         ... => return np.append(bias_coefficients(measured, true, repeat)[0], [0.0, 0.0])
@@ -273,8 +254,6 @@ EXERCISES = [
         Pixels that were measured only now and then take part. Use those that were measured in all frames.
         np.full(len(edges) - 1, np.nan) => np.zeros(len(edges) - 1)
         An empty bin has no noise that anyone measured: NaN, not 0.
-        variance[inside].mean() => variance[inside].mean() / len(frames)
-        That is the error of the mean of M frames. The task asks for the noise of one.
         np.sqrt(variance[inside].mean()) => frames[:, whole][:, inside].std(ddof=1)
         You throw all pixels of a bin together: then the scene itself counts as noise.
         np.sqrt(variance[inside].mean()) => np.diff(frames[:, whole][:, inside], axis=0).std()
