@@ -15,7 +15,6 @@ from course_lib.plots import figures
 from course_lib.plots.panorama_drawing import class_style, draw_box, panorama
 from course_lib.plots.room_figures import draw_pose
 
-DEVIATIONS = 2  # standard deviations of an ellipse
 SAME_PLACE_M = 0.3  # two things that are nearer share one name: the television on its cabinet
 VIEW = np.deg2rad(21.8)  # half of the angle that the depth camera sees
 SCENE = (
@@ -55,11 +54,11 @@ def named_together(labels: Sequence[str], places: np.ndarray) -> list[tuple[list
 
 
 def ellipse(covariance: np.ndarray, centre: Sequence[float]) -> np.ndarray:
-    """Return the outline `(2, n)` of `DEVIATIONS` standard deviations about a centre; covariance `(2, 2)`."""
+    """Return the outline `(2, n)` of two standard deviations about a centre; covariance `(2, 2)`."""
     values, vectors = np.linalg.eigh(covariance)
     circle = np.linspace(0, 2 * np.pi, 73)
     ring = np.sqrt(np.maximum(values, 0))[:, None] * np.stack([np.cos(circle), np.sin(circle)])
-    return np.asarray(centre)[:, None] + DEVIATIONS * vectors @ ring
+    return np.asarray(centre)[:, None] + 2 * vectors @ ring
 
 
 def sensors_figure(one: Journey) -> Figure:

@@ -68,8 +68,7 @@ class FinaleWorld:
         """Return the upper and the lower panorama `(640, 1280, 3)` BGR from a pose."""
         rng = generator(pose, PANORAMAS)
         rig = stand_up(pose, self.rig.upper_height, self.rig.baseline, self.models.rig, rng, self._mount)
-        images = [photograph(self._photographer.render(s), self.models.camera, rng) for s in rig.camera_states()]
-        return images[0], images[1]
+        return tuple(photograph(self._photographer.render(s), self.models.camera, rng) for s in rig.camera_states())
 
     def capture(self, state: np.ndarray, rng: np.random.Generator) -> np.ndarray:
         """Return one depth image `(144, 176)` from a state `(6,)` of the depth camera."""
@@ -144,11 +143,6 @@ def state_error(state: np.ndarray, true_state: np.ndarray) -> tuple[float, float
     return float(position), float(np.rad2deg(rotation))
 
 
-def is_reached(error: tuple[float, float]) -> bool:
-    """Return whether an error is within 3 cm and 1 degree."""
-    return error[0] <= REACHED[0] and error[1] <= REACHED[1]
-
-
 def journey(
     x: float, y: float, heading: float, hidden_share: float = 0, lens_cap: bool = False, say: Callable = lambda _: None
 ) -> Journey:
@@ -170,7 +164,7 @@ def journey(
         runs = [follow(here.renderer, start_state(start), depths, FILTER_SEED) for start in starts]
         best = max(runs, key=mean_score, default=None)
         errors = found.pose and plane_error(found.pose, pose), best and state_error(best[-1].state, states[-1])
-        reached = best is not None and is_reached(errors[1])
+        reached = best is not None and bool(np.all(np.less_equal(errors[1], REACHED)))
         _kept[key] = Journey(pose, images, found, errors[0], states, depths, starts, runs, best, errors[1], reached)
     if not lens_cap:
         return _kept[key]
@@ -186,11 +180,9 @@ def start_covariance(covariance: np.ndarray) -> np.ndarray:
 def joined(
     start: np.ndarray, covariance: np.ndarray, state: np.ndarray, state_covariance: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Join two answers, each weighed by its covariance, into a state `(6,)` and its covariance: a Kalman update.
+    """Join the start and the filter's first state `(6,)`, weighed by their covariances, in a Kalman update.
 
-        K = P_0 (P_0 + P_1)^-1        x = x_0 + K (x_1 - x_0)        P = (1 - K) P_0
-
-    start, covariance: the semantic pose. state, state_covariance: what the depth filter makes of the first image.
+    K = P_0 (P_0 + P_1)^-1        x = x_0 + K (x_1 - x_0)        P = (1 - K) P_0
     """
     difference = state - start
     difference[3:] = wrap_angle(difference[3:])
@@ -215,16 +207,15 @@ def misplaced(
         direction, side = rng.uniform(0, 2 * np.pi), rng.choice([-1.0, 1.0])
         off = [metres * np.cos(direction), metres * np.sin(direction), 0, 0, 0, side * np.deg2rad(degrees)]
         last = follow(world().renderer, one.states[0] + off, one.depths, FILTER_SEED)[-1]
-        arrived.append(is_reached(state_error(last.state, one.states[-1])))
+        arrived.append(bool(np.all(np.less_equal(state_error(last.state, one.states[-1]), REACHED))))
     return arrived
 
 
 def turn_and_look(one: Journey) -> tuple[tuple[float, float], int, bool]:
     """Turn the robot and look again until its pose is known: return metres and degrees, views, and whether it knows."""
     here = world()
-    estimate, state, views = finale.look_around(
-        here.renderer, one.starts, one.pose, here.capture, generator(one.pose, AROUND)
-    )
+    given = here.renderer, one.starts, one.pose, here.capture, generator(one.pose, AROUND)
+    estimate, state, views = finale.look_around(*given)
     return state_error(estimate.state, state), views, finale.is_known(estimate)
 
 

@@ -35,27 +35,18 @@ def by_blocks(covariance, sigma_z, sigma_tilt_deg):
     return block_diag(covariance, sigma_z**2, np.radians(sigma_tilt_deg) ** 2 * np.eye(2))[np.ix_(order, order)]
 
 
-def low(hits, n, z=1.96):
-    p = hits / n
-    return (p + z * z / 2 / n - z * math.sqrt(p * (1 - p) / n + z * z / 4 / n / n)) / (1 + z * z / n)
+def wilson(hits, n):
+    return binomtest(hits, n).proportion_ci(method="wilson").low
 
 
 def by_bisection(share, misses):
-    return bisect.bisect_left(range(4096), share, misses + 1, key=lambda n: low(n - misses, n))
-
-
-def by_scipy(share, misses):
-    tests = ((n, binomtest(n - misses, n)) for n in itertools.count(misses + 1))
-    return next(n for n, test in tests if test.proportion_ci(method="wilson").low >= share)
+    return bisect.bisect_left(range(4096), share, misses + 1, key=lambda n: wilson(n - misses, n))
 
 
 def derivative(theta, forward, left):
     """By differences of 19.1."""
-    ends = [
-        [by_matrix(*np.add(step, [0, 0, theta]), forward, left, 0) for step in side * np.eye(3)]
-        for side in (1e-6, -1e-6)
-    ]
-    return (np.array(ends[0]) - ends[1]).T / 2e-6
+    at = [[by_matrix(*np.add(off, [0, 0, theta]), forward, left, 0) for off in h * np.eye(3)] for h in (1e-6, -1e-6)]
+    return (np.array(at[0]) - at[1]).T / 2e-6
 
 
 def by_hand(p, theta, forward, left):
@@ -76,7 +67,7 @@ RIGHT = [
     ("19.2", by_blocks),
     ("19.2", lambda *given: np.array(by_loops(*given), np.float32)),
     ("19.3", by_bisection),
-    ("19.3", by_scipy),
+    ("19.3", lambda share, misses: next(n for n in itertools.count(misses + 1) if wilson(n - misses, n) >= share)),
     ("19.3", lambda *given: float(by_bisection(*given))),
     ("19.4", by_hand),
     ("19.4", lambda p, *given: derivative(*given) @ p @ derivative(*given).T),

@@ -14,7 +14,7 @@ def by_moments(numbers, distances):
 
 
 def by_its_ends(numbers, distances):
-    slope = (numbers[-1] - numbers[0]) / (distances[-1] - distances[0])
+    slope = np.ptp(numbers) / np.ptp(distances)
     return [slope, numbers[0] / slope - distances[0]]
 
 
@@ -57,8 +57,7 @@ def chain_by_loops(raw, invalid, units, coefficients, pattern, focal, repeat):
             m = float(number) / units
             p = 8 * math.pi * m / repeat
             r = m - coefficients @ [1, math.sin(p), math.cos(p)] - pattern[v, u]
-            x, y = (u - (raw.shape[1] - 1) / 2) / focal, (v - (raw.shape[0] - 1) / 2) / focal
-            found[v, u] = r / math.hypot(1, x, y)
+            found[v, u] = r * focal / math.hypot(focal, u - (raw.shape[1] - 1) / 2, v - (raw.shape[0] - 1) / 2)
     return found
 
 
