@@ -15,7 +15,6 @@ from course_lib.plots import figures
 from course_lib.plots.panorama_drawing import class_style, draw_box, panorama
 from course_lib.plots.room_figures import draw_pose
 
-SAME_PLACE_M = 0.3  # two things that are nearer share one name: the television on its cabinet
 VIEW = np.deg2rad(21.8)  # half of the angle that the depth camera sees
 SCENE = (
     "A furnished room cut open, its landmarks as posts with names; on the far wall a blue patch with the potted plant, "
@@ -42,13 +41,10 @@ def draw_room(axes: Axes, title: str) -> None:
 
 
 def named_together(labels: Sequence[str], places: np.ndarray) -> list[tuple[list[str], int]]:
-    """Return (names, index of the first) for each group of things at one place, so that no name covers another.
-
-    labels: n of them. places: `(n, 2)`, metres.
-    """
+    """Return (names, index of the first) of things within 0.3 m, so that no name covers another; places `(n, 2)`."""
     groups: dict[int, list[str]] = {}
     for k, label in enumerate(labels):
-        first = next((one for one in groups if np.hypot(*(places[one] - places[k])) < SAME_PLACE_M), k)
+        first = next((one for one in groups if np.hypot(*(places[one] - places[k])) < 0.3), k)
         groups.setdefault(first, []).append(label)
     return [(names, first) for first, names in groups.items()]
 

@@ -76,7 +76,6 @@ EXERCISES = [
     }, mistakes="""
         raw == invalid => raw <= invalid
         Only a pixel that is equal to `invalid` is a hole, not every one that is smaller or larger.
-        raw == invalid => raw == 0
         raw == invalid => (raw == 0) | (raw == 65535)
         Each file has its own number for a hole: `invalid`. Both 0 and 65535 may be depths like any other.
         raw == invalid => raw != invalid
@@ -144,7 +143,6 @@ EXERCISES = [
         "no baseline is enough": lambda rng: (8.0, 2.0, 512, 0.05),
     }, mistakes="""
         return np.nan => return np.inf
-        return np.nan => return 2 * distance
         Where even the best baseline is not good enough the task asks for NaN.
         return 2 * (reach - np.sqrt(reach**2 - distance**2)) => return 2 * distance
         There the error is least. The task asks for the *least baseline* whose error is still within the limit.
@@ -155,8 +153,7 @@ EXERCISES = [
         np.sqrt(2) * np.pi => 2 * np.pi
         You add the two rows' errors. They are independent: add their variances, then take the root.
         np.sqrt(2) * np.pi => np.sqrt(2) * 2 * np.pi
-        np.sqrt(2) * np.pi => np.sqrt(2) * 180
-        Rows run from straight up to straight down. That is pi radians, not 2 pi, and not 180.
+        Rows run from straight up to straight down. That is pi radians, not 2 pi.
         reach - np.sqrt => reach + np.sqrt
         Two baselines give just that error. The *least* is asked for: the other root.
     """),

@@ -10,7 +10,7 @@ import numpy as np
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence, write_sequence
 from course_lib.experiments.recordings import Run, run_sequence
 from course_lib.files import temporary_folder
-from course_lib.geometry import rotation_exp
+from course_lib.geometry import pose_matrix
 from course_lib.lessons.kit.corridor_views import corridor_map
 from course_lib.paths import data_path
 from course_lib.rendering.renderer import DepthRenderer
@@ -45,8 +45,6 @@ def recording(folder: str | Path | None = None) -> Recording:
     return Recording(folder.name, read_sequence(folder), SceneMap.load(maps[0]))
 
 
-TURNED = np.eye(4)
-TURNED[:3, :3] = rotation_exp(np.array([0.0, np.deg2rad(3.0), 0.0]))  # about the camera's own vertical
 # Name -> factor on depths, function of the camera-to-world matrix (4, 4), factor on fx and fy. The first reading is
 # right. Each of the others makes one mistake that people really make.
 READINGS = {
@@ -55,7 +53,7 @@ READINGS = {
     "poses: world to camera": (1.0, np.linalg.inv, 1.0),
     "camera axes: y up, z backward": (1.0, lambda pose: pose @ np.diag([1.0, -1.0, -1.0, 1.0]), 1.0),
     "K: focal lengths twice too long": (1.0, np.array, 2.0),
-    "map: turned by 3 degrees": (1.0, lambda pose: pose @ TURNED, 1.0),
+    "map: turned by 3 degrees": (1.0, lambda pose: pose @ pose_matrix(np.deg2rad([0, 0, 0, 0, 3.0, 0])), 1.0),
 }
 
 
