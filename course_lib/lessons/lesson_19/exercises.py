@@ -90,6 +90,8 @@ EXERCISES = [
     Exercise("19.2", start_knowledge, tolerance=1e-9, inputs=lambda rng: (
         semantic_covariance(rng), float(rng.uniform(0.003, 0.03)), float(rng.uniform(0.2, 2.0)),
     ), mistakes="""
+        sigma_z**2, tilt**2, tilt**2 => sigma_z**2, tilt, tilt
+        A covariance holds squares: sigma_z and sigma_tilt go in squared.
         sigma_z**2, tilt**2, tilt**2, 0.0 => 0.0, sigma_z**2, tilt**2, tilt**2 and also [0, 1, 5] => [0, 1, 2]
         sigma_z**2, tilt**2, tilt**2, 0.0 => sigma_z**2, 0.0, tilt**2, tilt**2 and also [0, 1, 5] => [0, 1, 3]
         Theta is the yaw, and yaw is the last of the six. At which places of the state are x, y and yaw?
@@ -114,6 +116,8 @@ EXERCISES = [
         That is the upper end: it says what is not excluded. The lower end says what is shown.
         return n => return n - misses
         You count the places that went well. The task asks for all places, with the misses.
+        / (1 + z**2 / n) >= => >=
+        Wilson's lower end is divided by 1 + z^2 / n: that is missing.
         1.96 => 1.645
         1.96 => 2.0
         z = 1 is the 68 % interval, 1.645 the 90 % one, 2.576 the 99 % one, and 2 is rounded. Take 1.96.

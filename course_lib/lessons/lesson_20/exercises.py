@@ -76,6 +76,7 @@ EXERCISES = [
     }, mistakes="""
         raw == invalid => raw <= invalid
         Only a pixel that is equal to `invalid` is a hole, not every one that is smaller or larger.
+        raw == invalid => raw == 0
         raw == invalid => (raw == 0) | (raw == 65535)
         Each file has its own number for a hole: `invalid`. Both 0 and 65535 may be depths like any other.
         raw == invalid => raw != invalid

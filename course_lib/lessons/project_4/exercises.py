@@ -214,7 +214,7 @@ EXERCISES = [
         The phase is in turns: np.sin takes radians.
         ... => return np.append(bias_coefficients(measured, true, repeat)[0], [0.0, 0.0])
         You have the constant alone: where is the wave?
-        columns, measured - true, rcond=None)[0] => columns, measured - true - np.mean(measured - true), rcond=None)[0]
+        np.ones_like(p), => 0 * p, and also return => return np.eye(3)[0] * np.mean(measured - true) +
         You take the mean away first. Constant and wave are not independent: fit all three at once.
         np.ones_like(p), np.sin(p), np.cos(p) => np.sin(p), np.cos(p), np.ones_like(p)
         The constant comes first: (a, b, c).
