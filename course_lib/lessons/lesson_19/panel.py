@@ -59,7 +59,7 @@ def anywhere_panel() -> Panel:
             cv2.resize(one.images[0], (640, 320), interpolation=cv2.INTER_AREA)[..., ::-1] if one else GREY
         )
         depth.set_data(np.ma.masked_invalid(one.depths[-1] if one else NO_DEPTH))
-        if one and not cap:
+        if one and np.isfinite(one.depths[-1]).any():
             depth.set_clim(*np.nanpercentile(one.depths[-1], [1, 99]))
         starts.set_data(*np.array([start[:2] for start in one.starts] if one else []).reshape(-1, 2).T)
         answers = []
