@@ -7,41 +7,32 @@ import numpy as np
 REACH = np.array([0.4, 0.3, 0.18])
 
 
-def vote_by_vote(vote, alpha):
-    return np.reshape([math.inf if v == 0 else alpha * (1 - v) / v for v in vote.flat], vote.shape)
-
-
 def coordinate_after_coordinate(score, start):
     """Rounds over x, y and yaw, each time the best of a few values, ever closer about the last best."""
     best = start
-    for reach in (0.6**k * REACH for k in range(8)):
-        for k in range(3):
-            tried = best + np.linspace(-1, 1, 16)[:, None] * reach * np.eye(3)[k]
-            best = tried[np.argmax(score(tried))]
+    for reach in (0.6 ** (k // 3) * REACH * np.eye(3)[k % 3] for k in range(24)):
+        tried = best + np.linspace(-1, 1, 16)[:, None] * reach
+        best = tried[np.argmax(score(tried))]
     return best
 
 
 def one_pose_at_a_time(score, start):
     """A walk: a random step is kept where it leads uphill; the steps grow shorter."""
-    rng = np.random.default_rng(1)
-    best, height = start, score(start)
+    rng, best, height = np.random.default_rng(1), start, score(start)
     for k in range(399):
         tried = best + 0.985**k * np.array([0.3, 0.25, 0.12]) * rng.normal(size=3)
-        if (value := score(tried)) > height:
-            best, height = tried, value
+        best, height = max((best, height), (tried, score(tried)), key=lambda pose: pose[1])
     return best.tolist()
 
 
 def weighted_cloud(score, start):
     """A small particle filter: resampled by a power of the score, moved less and less."""
-    rng = np.random.default_rng(2)
-    cloud, reach = np.tile(start, (50, 1)), np.array([0.3, 0.22, 0.12])
-    for _ in range(8):
-        cloud = cloud + reach * rng.normal(size=cloud.shape)
+    rng, cloud = np.random.default_rng(2), np.tile(start, (50, 1))
+    for k in range(8):
+        cloud = cloud + 0.6**k * np.array([0.3, 0.22, 0.12]) * rng.normal(size=cloud.shape)
         values = score(cloud)
         best = cloud[values.argmax()]
-        cloud = cloud[rng.choice(50, 50, p=values**30 / (values**30).sum())]
-        cloud[0], reach = best, 0.6 * reach
+        cloud = np.vstack([best, cloud[rng.choice(50, 49, p=values**30 / (values**30).sum())]])
     return best
 
 
@@ -61,10 +52,7 @@ RIGHT = [
     ("00.1", lambda m, s: np.abs(m.astype(np.float32) - s.astype(np.float32))),
     ("00.1", lambda m, s: np.sqrt((s - m) ** 2)),
     ("00.2", lambda v, a: a * (1 - v) / v),
-    ("00.2", vote_by_vote),
+    ("00.2", lambda v, a: np.reshape([math.inf if x == 0 else a * (1 - x) / x for x in v.flat], v.shape)),
     ("00.2", lambda v, a: a * (1 / v - 1)),
-    ("00.3", coordinate_after_coordinate),
-    ("00.3", one_pose_at_a_time),
-    ("00.3", weighted_cloud),
-    ("00.3", grids_about_the_best),
+    *[("00.3", f) for f in (coordinate_after_coordinate, one_pose_at_a_time, weighted_cloud, grids_about_the_best)],
 ]
