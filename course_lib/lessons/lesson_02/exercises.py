@@ -24,10 +24,9 @@ def station_places(steps):
     return np.array(places)
 
 
-def some_steps(rng: np.random.Generator) -> tuple:
-    n = int(rng.integers(3, 6))
-    turns = np.column_stack([rng.uniform(-0.1, 0.1, (n, 2)), rng.uniform(0.3, 2.5, n) * rng.choice([-1, 1], n)])
-    return (pose_matrix(np.column_stack([rng.uniform([2, -1, -0.2], [6, 1, 0.2], (n, 3)), turns])),)
+def some_steps(rng: np.random.Generator, n: int = 4) -> tuple:
+    headings = rng.uniform(0.3, 2.5, (n, 1)) * rng.choice([-1, 1], (n, 1))
+    return (pose_matrix(np.hstack([rng.uniform([2, -1, -0.2, -0.1, -0.1], [6, 1, 0.2, 0.1, 0.1], (n, 5)), headings])),)
 
 
 def share_of_holes(seen, mapped, limit):
@@ -46,12 +45,6 @@ def places_and_map(rng: np.random.Generator) -> tuple:
     away = rng.uniform(0, 1.6, len(kept)) * limit
     mapped = kept + np.column_stack([away * np.cos(aslant), away * np.sin(aslant), 0 * away])
     return seen, np.concatenate([mapped, rng.uniform([0, 0, 1], [4, 4, 2], (9, 3))]), limit
-
-
-def no_holes(rng: np.random.Generator) -> tuple:
-    """Return places that have several map points within the limit. Some of them are map points themselves."""
-    seen = np.insert(rng.uniform(0, 4, (20, 2)), 2, 0, axis=1)
-    return seen, np.concatenate([seen, np.add(seen, [0.03, 0.04, 0]), np.add(seen[:7], [-0.02, 0, 0.05])]), 0.1
 
 
 def lateral_sigma(n_steps, spacing, sigma_place, sigma_heading):
@@ -102,7 +95,7 @@ EXERCISES = [
     """),
     Exercise("02.2", station_places, some_steps, cases={
         "round a square": lambda rng: (pose_matrix(np.tile([3.0, 0, 0, 0, 0, np.pi / 2], (4, 1))),),
-        "one step": lambda rng: (some_steps(rng)[0][:1],),
+        "one step": lambda rng: some_steps(rng, 1),
         "one station": lambda rng: (np.empty((0, 4, 4)),),
     }, mistakes="""
         ... => return np.vstack([np.zeros(3), np.cumsum(steps[:, :3, 3], axis=0)])
@@ -130,7 +123,7 @@ EXERCISES = [
         These are the steps themselves, each counted from the station before. Carry them on to station 0.
     """),
     Exercise("02.3", share_of_holes, places_and_map, cases={
-        "no holes": no_holes,
+        "no holes": lambda rng: (np.eye(3), np.concatenate([np.eye(3), np.eye(3) + 0.04, np.eye(3)[:2] - 0.03]), 0.1),
         "nothing but holes": lambda rng: (rng.uniform(0, 1, (12, 3)), rng.uniform(3, 4, (5, 3)), 0.1),
     }, mistakes="""
         ... => return share_of_holes(mapped, seen, limit)

@@ -7,7 +7,7 @@ import numpy as np
 
 
 def elevation(p):
-    return math.asin(p[2] / math.dist(p, (0, 0, 0)))
+    return math.asin(p[2] / math.hypot(*p))
 
 
 def walked(steps):
@@ -36,10 +36,7 @@ def simulated_sigma(n_steps, spacing, sigma_place, sigma_heading, runs=10_000):
 
 
 RIGHT = [
-    (
-        "02.1",
-        lambda p: ([math.dist(q, (0, 0, 0)) for q in p], [math.atan2(q[1], q[0]) for q in p], [*map(elevation, p)]),
-    ),
+    ("02.1", lambda p: ([math.hypot(*q) for q in p], [math.atan2(q[1], q[0]) for q in p], [*map(elevation, p)])),
     ("02.1", lambda p: np.stack([np.linalg.norm(p, axis=1), np.angle(p[:, 0] + 1j * p[:, 1]), [*map(elevation, p)]])),
     ("02.1", lambda p: [[f(q) for q in p] for f in (np.linalg.norm, lambda q: math.atan2(q[1], q[0]), elevation)]),
     ("02.2", walked),
