@@ -111,7 +111,7 @@ EXERCISES = [
         near / (1 - b) holds for an infinite far plane. Here b = 1 would lie at far, so keep far in.
     """),
     Exercise("03.2", depth_on_edge, lambda rng: (
-        *rng.permutation([rng.uniform(0.5, 3.0), rng.uniform(4.0, 20.0)]), np.array([0.0, 1.0, *rng.uniform(0.05, 0.95, 6)]),
+        *rng.permutation(rng.uniform([0.5, 4.0], [3.0, 20.0])), np.array([0.0, 1.0, *rng.uniform(0.05, 0.95, 6)]),
     ), cases={"ends equally far": lambda rng: (3.0, 3.0, np.linspace(0, 1, 5))}, mistakes="""
         ... => return (1 - s) * z_start + s * z_end
         You mix Z itself. On the screen 1/Z changes evenly, so mix 1/Z, then turn it over.
@@ -131,7 +131,7 @@ EXERCISES = [
         That is the depth half way, at s = 0.5, everywhere. Where is s?
     """),
     Exercise("03.3", nearest_surface, lambda rng: (
-        np.where(rng.random((4, 5, 6)) < 0.35, np.inf, rng.uniform(0.1, 15.0, (4, 5, 6))), *rng.uniform([0.5, 8], [1, 12]),
+        np.where(rng.random((4, 5, 6)) < 0.35, np.inf, rng.uniform(0.1, 15, (4, 5, 6))), *rng.uniform([0.5, 8], [1, 12]),
     ), cases={
         "depths of near and far themselves":  # and a pixel that nothing covers
             lambda rng: (np.array([[[0.5, 8.0, np.inf]], [[2.0, 9.0, np.inf]], [[0.4, np.inf, 0.1]]]), 0.5, 8.0),
