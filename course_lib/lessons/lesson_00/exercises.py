@@ -15,11 +15,9 @@ def depth_difference(measured, simulated):
 
 
 def two_images(rng: np.random.Generator) -> tuple:
-    measured = rng.uniform(1.0, 9.0, rng.integers(2, 5, size=2))
-    simulated = measured + rng.normal(0, 0.5, measured.shape)
-    if rng.random() < 0.5:  # a wall seen through an open door: nothing in the task caps a difference
-        simulated.flat[rng.integers(simulated.size)] += rng.uniform(12.0, 20.0)
-    return measured, simulated
+    measured = rng.uniform(1.0, 9.0, (3, 4))
+    # Some pixels see a wall through an open door, because nothing in the task caps a difference.
+    return measured, measured + rng.normal(0, 0.5, (3, 4)) + np.where(rng.random((3, 4)) < 0.1, 15.0, 0.0)
 
 
 def difference_of_vote(vote, alpha):
@@ -126,7 +124,7 @@ EXERCISES = [
         Where the map has a hole yours is nan. Only a pixel that was *not measured* is nan; at a hole it is inf.
     """),
     Exercise("00.2", difference_of_vote,
-             lambda rng: (rng.uniform(0.05, 0.95, rng.integers(2, 5, size=2)), rng.uniform(0.05, 0.5)),
+             lambda rng: (rng.uniform(0.05, 0.95, (3, 4)), rng.uniform(0.05, 0.5)),
              cases={"votes of 0 and 1": lambda rng: (np.array([0.1, 0.6, 1.0, 0.0, 0.5]), 0.1)}, mistakes="""
         alpha / vote - alpha => alpha * vote / (1 - vote)
         At vote 1 yours is inf, but there the two images agree. Numerator and denominator have changed places.

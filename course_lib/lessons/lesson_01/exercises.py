@@ -123,8 +123,6 @@ EXERCISES = [
         The position is the last column of the matrix, already in the world. It needs no B and no inverse.
         ... => return state_of(np.linalg.inv(matrix))
         You inverted the matrix, but it is camera-to-world already. Its last column is the position.
-        roll, pitch, yaw]) => 0, 0, yaw])
-        Yours is right for a wagon, because roll and pitch are always 0. A camera in a hand rolls and tilts, too.
         roll, pitch, yaw]) => *Rotation.from_matrix(R).as_euler("zyx")[::-1]])
         The course's order is scipy's "ZYX", with capitals. Small letters turn about axes that stay put.
         roll, pitch, yaw]) => yaw, pitch, roll])
@@ -157,8 +155,6 @@ EXERCISES = [
         ... => return np.r_[pose_matrix(before)[:3, :3] @ (after - before)[:3], motion(before, after)[3:]]
         ... => return np.r_[-motion(after, before)[:3], motion(before, after)[3:]]
         The turn is right. The step goes from the world into the *first* body frame: R of `before`, transposed.
-        ... => return np.r_[motion(before, after)[:3], np.rad2deg(motion(before, after)[3:])]
-        Your angles are in degrees, but a state holds radians.
         pose_matrix => optical_pose
         That is the motion in the *optical* frame: right, down, forward. The task asks for the body frame.
     """),
@@ -176,8 +172,6 @@ EXERCISES = [
         You multiply the turns in one way only. The first column may act first, or the last, so try both.
         product((1, -1), repeat=3)) => [(1, 1, 1)])
         You never try a negative sign. An airplane's pitch is positive upward.
-        product((1, -1), repeat=3)) => [(1, 1, 1), (-1, -1, -1)])
-        You give all three columns one sign. Each column may have its own, so there are 8 mixtures.
         key=misfit) => key=misfit); return np.deg2rad(new * signs)[:, np.argsort(list(axes.lower()))]
         You sort columns and mend signs. But turns in another order have other angles, so go through matrices.
         ... => return decode(angles, rotations.transpose(0, 2, 1), new)

@@ -109,12 +109,8 @@ EXERCISES = [
         K steps lead to K + 1 stations. You miss the last one, or the first at (0, 0, 0) of its own frame.
         pose = pose @ step => places.append(places[-1] + pose[:3, :3] @ step[:3, 3]); pose = step; continue
         You turn each step by the turn before it alone. All turns so far have turned it.
-        pose = pose @ step => pose = pose @ step; places.append(places[-1] + pose[:3, :3] @ step[:3, 3]); continue
-        You turn before you step. The turn of a step changes the next steps, not this one.
         pose = pose @ step => places.append(places[-1] + pose[:3, :3].T @ step[:3, 3]); pose = pose @ step; continue
         You turn each step the wrong way. R leads from the station's axes to the world's as it is.
-        pose = pose @ step => places.append(places[-1] + pose[:3, :3] @ step[:3, 3]); pose = step @ pose; continue
-        Your turns multiply in the wrong order. The newest one stands on the right of those before.
         pose @ step => pose @ pose_matrix(np.r_[step[:3, 3], 0, 0, np.arctan2(step[1, 0], step[0, 0])])
         Yours is right on a level floor, because you turn by the heading alone. A step may tilt and roll, too.
         pose[:3, 3] => pose[3, :3]
@@ -138,8 +134,6 @@ EXERCISES = [
         That is a mean distance in metres. Count the places that are farther than the limit.
         .min() => .mean()
         You let far map points count. One near a place is enough, so only the nearest one decides.
-        .min() =>
-        You take the share of all pairs. First find the nearest map point of each place, then count places.
         ... => return share_of_holes(seen[:, :2], mapped[:, :2], limit)
         You measure on the floor, but a map point high above a place is not near it. Take x, y *and* z.
         nearest > limit => nearest**2 > limit

@@ -131,7 +131,7 @@ EXERCISES = [
         That is the depth half way, at s = 0.5, everywhere. Where is s?
     """),
     Exercise("03.3", nearest_surface, lambda rng: (
-        np.where(rng.random((4, 5, 6)) < 0.35, np.inf, rng.uniform(0.1, 15, (4, 5, 6))), *rng.uniform([0.5, 8], [1, 12]),
+        np.where(rng.random((4, 5, 6)) < 0.3, np.inf, rng.uniform(0.1, 15, (4, 5, 6))), *rng.uniform([0.5, 8], [1, 12]),
     ), cases={
         "depths of near and far themselves":  # and a pixel that nothing covers
             lambda rng: (np.array([[[0.5, 8.0, np.inf]], [[2.0, 9.0, np.inf]], [[0.4, np.inf, 0.1]]]), 0.5, 8.0),

@@ -52,7 +52,9 @@ def idea_figure(hits: dict[str, list[tuple[float, float]]]) -> Figure:
     axes.set(xlabel="depth Z along the optical axis [m]", ylabel="height [m]", xlim=(-0.2, 7), ylim=(-1.75, 1.75))
     axes.set_title("What a z-buffer keeps, seen from the side")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
-    alt = "Side view: seven rays leave a virtual camera; each keeps its first hit on a surface and drops the later ones."
+    alt = (
+        "Side view: seven rays leave a virtual camera; each keeps its first hit on a surface and drops the later ones."
+    )
     return described(figure, alt)
 
 
