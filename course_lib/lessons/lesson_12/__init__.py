@@ -6,9 +6,13 @@ from course_lib.lessons.lesson_12.figures import crops_figure, idea_figure, thre
 from course_lib.lessons.lesson_12.measures import (
     anchors,
     colours_against_map,
+    cut_counts,
+    cut_sofa,
+    cut_table,
     hues_and_saturations,
     precision_and_recall,
+    said_of_the_sofa,
     training_picture,
-)
+    true_object,
+)  # fmt: skip
 from course_lib.lessons.lesson_12.panel import PANELS, hue_panel, seam_panel
-from course_lib.lessons.lesson_12.seam_cuts import cut_counts, cut_sofa, cut_table, said_of_the_sofa, true_object

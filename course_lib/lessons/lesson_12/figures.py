@@ -13,19 +13,17 @@ from matplotlib.patches import Rectangle
 from course_lib.experiments.intervals import wilson_percent
 from course_lib.lessons.kit.display import described
 from course_lib.lessons.lesson_12.measures import ThresholdScore, TrainingPicture, anchors
-from course_lib.plots import figures
-from course_lib.plots.figures import BLACK, VERMILION, YELLOW
+from course_lib.plots.figures import BLACK, VERMILION, YELLOW, line_style, new_figure
 from course_lib.plots.panorama_drawing import CLASS_STYLES, class_style, draw_box, panorama
 from course_lib.spherical_stereo.detection.seam import extend_seam, valid_range
 
 CROP = 220  # pixels of the square in which a box is shown
-GAMMA = 0.65  # of pictures as they are drawn: the rooms are dim
 INPUT_SCALE = 0.8  # pixels of the network's input per pixel of a panorama 1280 wide
 
 
 def brighter(image_bgr: np.ndarray) -> np.ndarray:
-    """Return the picture as it is drawn, its dark parts lifted; the network gets it as it is."""
-    return cv2.LUT(image_bgr, np.round(255 * (np.arange(256) / 255) ** GAMMA).astype(np.uint8))
+    """Return the picture as we draw it, with its dark parts lifted. The network gets it as it is."""
+    return cv2.LUT(image_bgr, np.round(255 * (np.arange(256) / 255) ** 0.65).astype(np.uint8))
 
 
 def class_legend(figure: Figure, labels: Iterable[str] = CLASS_STYLES) -> None:
@@ -49,14 +47,14 @@ def extended_axes(axes: Axes, image_bgr: np.ndarray, title: str) -> list[Artist]
     seam = axes.axvline(width, color=VERMILION, linewidth=2.0)
     edges = [axes.axvline(edge, color=BLACK, linewidth=1.6, linestyle="--") for edge in valid_range(width)]
     axes.grid(False)
-    axes.set(title=title, xlabel="column u [pixels]", ylabel="row v [pixels]", xlim=(0, end), ylim=(height, 0))
-    axes.set_xticks(np.linspace(0, end, 6))
+    axes.set(title=title, xlabel="column u [pixels]", ylabel="row v [pixels]")
+    axes.set(xlim=(0, end), ylim=(height, 0), xticks=np.linspace(0, end, 6))
     return [shown, pale, seam, *edges]
 
 
 def idea_figure(image_bgr: np.ndarray, boxes: np.ndarray, labels: Sequence[str], counted: np.ndarray) -> Figure:
     """The extended panorama with every box that the network saw on it; thin and dotted where it does not count."""
-    figure, axes = figures.new_figure(size=(8.6, 3.7))
+    figure, axes = new_figure(size=(8.6, 3.7))
     extended_axes(axes, image_bgr, "What the network sees on the extended image (dashed: the range that counts)")
     for box, label, counts in zip(boxes, labels, counted, strict=True):
         colour, _ = class_style(label)
@@ -70,18 +68,15 @@ def idea_figure(image_bgr: np.ndarray, boxes: np.ndarray, labels: Sequence[str],
 def training_figure(taught: TrainingPicture, chosen: int) -> Figure:
     """The picture with its exact boxes; close up, one object, the cells that answer for it, and their three shapes."""
     label, (low, high) = taught.labels[chosen], taught.boxes[chosen].reshape(2, 2)
-    size, centre, (shapes, strides) = high - low, (low + high) / 2, anchors()
-    shapes, cells = shapes / INPUT_SCALE, strides / INPUT_SCALE
+    size, centre, (shapes, cells) = high - low, (low + high) / 2, (values / INPUT_SCALE for values in anchors())
     shared = np.minimum(size, shapes).prod(axis=1)
     best = np.argmax(shared / (size.prod() + shapes.prod(axis=1) - shared))
-    cell = cells[best]
-
-    figure, (whole, close) = figures.new_figure(1, 2, size=(8.6, 3.4))
+    cell, (height, width) = cells[best], taught.image.shape[:2]
+    figure, (whole, close) = new_figure(1, 2, size=(8.6, 3.4))
     whole.get_gridspec().set_width_ratios([2.2, 1])
     panorama(whole, brighter(taught.image), "A picture of the training, and what is asked for")
     for box, name in zip(taught.boxes, taught.labels, strict=True):
-        draw_box(whole, box, taught.image.shape[1], name)
-    height, width = taught.image.shape[:2]
+        draw_box(whole, box, width, name)
     close.imshow(brighter(taught.image)[..., ::-1], extent=(0, width, height, 0))
     close.grid(False)
     close.set(title=f"{label.capitalize()}: cells, shapes", xlabel="column u [pixels]", ylabel="row v [pixels]")
@@ -98,36 +93,33 @@ def training_figure(taught: TrainingPicture, chosen: int) -> Figure:
         close.add_patch(Rectangle(centre - shapes[k] / 2, *shapes[k], fill=False, linestyle="--", **look))
     close.add_patch(Rectangle(low, *size, edgecolor=class_style(label)[0], linewidth=2.4, fill=False))
     class_legend(figure, taught.labels)
-    alt = (
+    return described(
+        figure,
         "A photograph of a generated room with the exact boxes of its furniture; close up, a plant over a grid of "
-        "cells, three of them marked, and three dashed rectangles of different shape about its centre."
+        "cells, three of them marked, and three dashed rectangles of different shape about its centre.",
     )
-    return described(figure, alt)
 
 
 def threshold_figure(scores: dict[float, ThresholdScore], chosen: float) -> Figure:
     """Precision and recall over the score threshold, with Wilson's 95 % intervals."""
-    figure, axes = figures.new_figure(size=(6.4, 3.2))
+    figure, axes = new_figure(size=(6.4, 3.2))
     for index, (name, of) in enumerate((("precision", "made"), ("recall", "wanted"))):
         counts = [(one.right, getattr(one, of)) for one in scores.values()]
         shares = np.array([right / total for right, total in counts])
         bars = np.abs(np.array([wilson_percent(*count) for count in counts]).T / 100 - shares)
-        style = figures.line_style(index) | {"label": name, "capsize": 3}
-        axes.errorbar(np.add(list(scores), 0.006 * index), shares, bars, **style)
+        axes.errorbar(np.add(list(scores), 0.006 * index), shares, bars, label=name, capsize=3, **line_style(index))
     axes.axvline(chosen, color=BLACK, linewidth=1.2, linestyle="--", label="chosen in training")
     axes.set(title="A threshold is a bargain", xlabel="score threshold [-]", ylabel="share [-]", ylim=(0.4, 1.02))
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     alt = (
         "Precision rises from 0.88 to 1 and recall falls from 0.96 to 0.63 as the score threshold goes from 0.1 to 0.9;"
-        " bars show the 95 % intervals."
     )
-    return described(figure, alt)
+    return described(figure, f"{alt} bars show the 95 % intervals.")
 
 
 def part_of(box: Sequence[float], share: float) -> np.ndarray:
     """Return the box about the same centre with `share` of the width and of the height."""
-    low, high = np.reshape(box, (2, 2))
-    return np.concatenate([low + high - share * (high - low), low + high + share * (high - low)]) / 2
+    return np.add(np.multiply(box, 1 + share), np.multiply(np.take(box, [2, 3, 0, 1]), 1 - share)) / 2
 
 
 def crop_of(image_bgr: np.ndarray, box: Sequence[float]) -> tuple[np.ndarray, np.ndarray, float]:
@@ -147,8 +139,8 @@ def crop_of(image_bgr: np.ndarray, box: Sequence[float]) -> tuple[np.ndarray, np
 
 def crops_figure(image_bgr: np.ndarray, boxes: dict[str, Sequence[float]]) -> Figure:
     """Some boxes close up, each with the central half in which its colour is measured."""
-    figure, axes = figures.new_figure(1, len(boxes), size=(2.5 * len(boxes), 2.8))
-    for a, (name, box) in zip(np.atleast_1d(axes), boxes.items(), strict=True):
+    figure, axes = new_figure(1, len(boxes), size=(2.5 * len(boxes), 2.8))
+    for a, (name, box) in zip(axes, boxes.items(), strict=True):
         crop, corner, side = crop_of(image_bgr, box)
         a.imshow(crop, extent=(0, side, side, 0))
         for frame, dashes in ((box, "-"), (part_of(box, 0.5), "--")):
