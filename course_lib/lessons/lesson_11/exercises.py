@@ -117,8 +117,6 @@ EXERCISES = [
     }, mistakes="""
         (gap + 180) % 360 - 180 => gap - 360 if gap >= 180 else gap + 360 if gap < -180 else gap
         An `if` takes away one turn at most. Columns beyond the edges may be more than one turn apart.
-        (gap + 180) % 360 - 180 => gap - 360 if gap >= 180 else gap
-        You mend gaps of 180 and more, or gaps below -180, but not both.
         (gap + 180) % 360 - 180 => gap
         Across the seam yours is nearly a whole turn. Bring the difference back to [-180, 180).
         (u_from - u_to) => (u_to - u_from)
@@ -132,8 +130,6 @@ EXERCISES = [
         (gap + 180) % 360 - 180 => gap if abs(gap) < 180 else 360 - gap
         (gap + 180) % 360 - 180 => np.sign(gap) * min(abs(gap), 360 - abs(gap))
         Across the seam the shorter way goes to the other side: add whole turns to the gap, or take them away.
-        / width * 360 => / width * 180
-        The whole width is 360 degrees; in yours it is 180.
     """),
     Exercise("11.3", shortest_stretch, points_of_an_object, cases={
         name: lambda rng, columns=columns: (np.array(columns), 1280) for name, columns in {

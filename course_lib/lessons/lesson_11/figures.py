@@ -1,4 +1,4 @@
-"""Figures of lesson 11: panorama and sphere, views cut out, the seam, bearings."""
+"""Figures and panel of lesson 11: panorama and sphere, views cut out, the seam, bearings."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -8,18 +8,13 @@ from course_lib.lessons.kit.display import described
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Drawing, Panel, Slider
 from course_lib.lessons.kit.room_photographs import room_recording, the_image
-from course_lib.lessons.lesson_11.sphere_view import LOOK, DrawnSphere
+from course_lib.lessons.lesson_11.sphere_view import LOOK, DrawnSphere, circle_around
 from course_lib.plots.figures import BLACK, BLUE, VERMILION, YELLOW, line_style, new_figure
 from course_lib.plots.panorama_drawing import draw_box, panorama
 from course_lib.spherical_stereo import SemanticMap
 from course_lib.spherical_stereo.detection.detected_object import box_centre
 from course_lib.spherical_stereo.detection.seam import extend_seam
-from course_lib.spherical_stereo.panorama import (
-    azimuth_elevation,
-    direction_from_angles,
-    direction_to_pixel,
-    pixel_to_direction,
-)
+from course_lib.spherical_stereo.panorama import azimuth_elevation, direction_to_pixel, pixel_to_direction
 from course_lib.spherical_stereo.recording import TrueObject
 
 
@@ -90,13 +85,6 @@ def bearings_figure(measured: np.ndarray, from_map: np.ndarray) -> Figure:
     return described(figure, alt)
 
 
-CONTROLS = [
-    Slider("u", "column u [pixels]", 0, 1600, 1200, 10),
-    Slider("v", "row v [pixels]", 0, 640, 410, 10),
-    Slider("look", "look towards [degrees]", -180, 180, LOOK, 15),
-]
-
-
 def sphere_panel() -> Panel:
     """A point on the panorama with its left quarter repeated, and on the sphere; the view on the sphere can turn."""
     image = the_image()
@@ -140,14 +128,9 @@ def sphere_panel() -> Panel:
         alt = f"A point and a circle of 10 degrees on a panorama and on the unit sphere. {place}."
         return Drawing(live.png(), alt, f"{place}\n{numbers}")
 
-    return Panel("11 panorama and sphere", CONTROLS, draw, photograph=True)
-
-
-def circle_around(direction: np.ndarray) -> np.ndarray:
-    """Return directions `(73, 3)` of a circle of 10 degrees around a direction: round on the sphere."""
-    left = direction_from_angles(azimuth_elevation(direction)[0] + np.pi / 2, 0.0)
-    t, radius = np.linspace(0, 2 * np.pi, 73)[:, None], np.radians(10)
-    return np.cos(radius) * direction + np.sin(radius) * (np.cos(t) * left + np.sin(t) * np.cross(direction, left))
+    place = [Slider("u", "column u [pixels]", 0, 1600, 1200, 10), Slider("v", "row v [pixels]", 0, 640, 410, 10)]
+    controls = [*place, Slider("look", "look towards [degrees]", -180, 180, LOOK, 15)]
+    return Panel("11 panorama and sphere", controls, draw, photograph=True)
 
 
 PANELS = {"11 panorama and sphere": sphere_panel}

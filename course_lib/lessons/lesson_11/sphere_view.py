@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from course_lib.plots.figures import BLACK, BLUE, VERMILION
-from course_lib.spherical_stereo.panorama import direction_from_angles, direction_to_pixel
+from course_lib.spherical_stereo.panorama import azimuth_elevation, direction_from_angles, direction_to_pixel
 
 LOOK = 150.0  # degrees: azimuth in which one looks at first
 _ACROSS = (np.arange(300) + 0.5) / 150 - 1
@@ -68,3 +68,10 @@ class DrawnSphere:
     def is_near(self, directions: np.ndarray) -> np.ndarray:
         """Return which directions `(..., 3)` lie on the near half, which is taken away."""
         return directions @ self.view[2] < 0
+
+
+def circle_around(direction: np.ndarray) -> np.ndarray:
+    """Return directions `(73, 3)` of a circle of 10 degrees around a direction: round on the sphere."""
+    left = direction_from_angles(azimuth_elevation(direction)[0] + np.pi / 2, 0.0)
+    t, radius = np.linspace(0, 2 * np.pi, 73)[:, None], np.radians(10)
+    return np.cos(radius) * direction + np.sin(radius) * (np.cos(t) * left + np.sin(t) * np.cross(direction, left))

@@ -154,8 +154,6 @@ EXERCISES = [
         You take the range from W/8, as in the lesson. Here it begins at `start`.
         < start + width => <= start + width
         A centre on the right end counts in yours, and so does its copy on the left end: twice in all.
-        >= start => > start
-        A centre right on the left end is lost in yours. The left end belongs to the range, the right end does not.
         centre >= start => boxes[:, 0] >= start and also centre < => boxes[:, 2] <
         You ask for the whole box inside. Then an object on either end of the range never counts.
         & (centre < start + width) =>
@@ -173,8 +171,6 @@ EXERCISES = [
     }, mistakes="""
         (-width, 0, width) => (0,)
         Across the seam yours is 0: one of the boxes may have to be moved by a whole turn first.
-        max(0, => max(-np.inf, and also (-width, 0, width) => (0,)
-        Two things: boxes apart have negative lengths (cut them off at 0), and the seam needs a turn.
         sum(max(0, => max(max(-np.inf,
         Boxes that are apart side by side share nothing: cut every length across off at 0 before you use it.
         max(0, min(a[3] => max(-np.inf, min(a[3]
@@ -205,8 +201,6 @@ EXERCISES = [
         A chair may stand before a sofa: only boxes of the same class put each other out.
         [kept => [best > best[i]
         You compare with every surer box, also with boxes that went. Only a box that stayed puts others out.
-        np.argsort(-best) => range(len(best))
-        You go through the rows in their order. The surest box comes first.
         np.array(kept, dtype=int) => np.sort(np.array(kept, dtype=int))
         The right rows in a wrong order (as given, least score first, or class after class): the surest comes first.
         ... => good = scores.max(axis=1) >= threshold; return surest(boxes[good], scores[good], threshold, limit)

@@ -1,7 +1,6 @@
 """Figures of lesson 12: boxes on an extended panorama, a picture of the training, thresholds, boxes close up."""
 
 from collections.abc import Iterable, Sequence
-from itertools import zip_longest
 
 import cv2
 import numpy as np
@@ -18,15 +17,7 @@ from course_lib.lessons.kit.display import described
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
 from course_lib.lessons.kit.room_photographs import the_image, the_pair
-from course_lib.lessons.lesson_12.measures import (
-    ThresholdScore,
-    TrainingPicture,
-    anchors,
-    cut_sofa,
-    hues_and_saturations,
-    is_large,
-    pieces_of_sofa,
-)
+from course_lib.lessons.lesson_12 import measures
 from course_lib.plots.figures import BLACK, BLUE, ORANGE, VERMILION, YELLOW, line_style, new_figure
 from course_lib.plots.panorama_drawing import CLASS_STYLES, class_style, draw_box, panorama
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
@@ -34,6 +25,7 @@ from course_lib.spherical_stereo.detection.detected_object import box_centre, bo
 from course_lib.spherical_stereo.detection.seam import extend_seam, valid_range
 
 CROP = 220  # pixels of the square in which a box is shown
+N_BINS = 36  # of hue, 10 degrees each
 INPUT_SCALE = 0.8  # pixels of the network's input per pixel of a panorama 1280 wide
 
 
@@ -44,7 +36,7 @@ def brighter(image_bgr: np.ndarray) -> np.ndarray:
 
 def class_legend(figure: Figure, labels: Iterable[str] = CLASS_STYLES) -> None:
     """Say which colour a box of a class has, below everything else."""
-    shown = [label for label in CLASS_STYLES if label in set(labels)]
+    shown = [label for label in CLASS_STYLES if label in labels]
     handles = [Line2D([], [], color=class_style(label)[0], linewidth=2.4) for label in shown]
     figure.legend(handles, shown, loc="outside lower center", ncols=len(shown), frameon=False, fontsize=8)
 
@@ -81,10 +73,14 @@ def idea_figure(image_bgr: np.ndarray, boxes: np.ndarray, labels: Sequence[str],
     return described(figure, alt)
 
 
-def training_figure(taught: TrainingPicture, chosen: int) -> Figure:
+def training_figure(taught: measures.TrainingPicture, chosen: int) -> Figure:
     """The picture with its exact boxes; close up, one object, the cells that answer for it, and their three shapes."""
     label, (low, high) = taught.labels[chosen], taught.boxes[chosen].reshape(2, 2)
-    size, centre, (shapes, cells) = high - low, (low + high) / 2, (values / INPUT_SCALE for values in anchors())
+    size, centre, (shapes, cells) = (
+        high - low,
+        (low + high) / 2,
+        (values / INPUT_SCALE for values in measures.anchors()),
+    )
     shared = np.minimum(size, shapes).prod(axis=1)
     best = np.argmax(shared / (size.prod() + shapes.prod(axis=1) - shared))
     cell, (height, width) = cells[best], taught.image.shape[:2]
@@ -116,7 +112,7 @@ def training_figure(taught: TrainingPicture, chosen: int) -> Figure:
     )
 
 
-def threshold_figure(scores: dict[float, ThresholdScore], chosen: float) -> Figure:
+def threshold_figure(scores: dict[float, measures.ThresholdScore], chosen: float) -> Figure:
     """Precision and recall over the score threshold, with Wilson's 95 % intervals."""
     figure, axes = new_figure(size=(6.4, 3.2))
     for index, (name, of) in enumerate((("precision", "made"), ("recall", "wanted"))):
@@ -127,10 +123,8 @@ def threshold_figure(scores: dict[float, ThresholdScore], chosen: float) -> Figu
     axes.axvline(chosen, color=BLACK, linewidth=1.2, linestyle="--", label="chosen in training")
     axes.set(title="A threshold is a bargain", xlabel="score threshold [-]", ylabel="share [-]", ylim=(0.4, 1.02))
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-    alt = (
-        "Precision rises from 0.88 to 1 and recall falls from 0.96 to 0.63 as the score threshold goes from 0.1 to 0.9;"
-    )
-    return described(figure, f"{alt} bars show the 95 % intervals.")
+    alt = "Precision rises from 0.88 to 1 and recall falls from 0.96 to 0.63 as the score threshold goes from 0.1 to "
+    return described(figure, alt + "0.9; bars show the 95 % intervals.")
 
 
 def part_of(box: Sequence[float], share: float) -> np.ndarray:
@@ -168,7 +162,6 @@ def crops_figure(image_bgr: np.ndarray, boxes: dict[str, Sequence[float]]) -> Fi
     return described(figure, alt)
 
 
-N_BINS = 36  # of hue, 10 degrees each
 SEAM_CONTROLS = [
     Slider("cut", "seam at [% of the sofa]", 0, 100, 50, 10),
     Switch("extension", "append the left quarter (extension)", True),
@@ -178,7 +171,7 @@ SEAM_CONTROLS = [
 
 def seam_panel() -> Panel:
     """Slide the seam through the sofa, with and without the extension; a score threshold. The network runs first."""
-    cuts = {percent: cut_sofa(percent) for percent in range(0, 101, 10)}
+    cuts = {percent: measures.cut_sofa(percent) for percent in range(0, 101, 10)}
     width = cuts[0].image.shape[1]
     turn = np.array([width, 0.0, width, 0.0])
     figure, axes = new_figure(size=(9.2, 4.1))
@@ -209,20 +202,18 @@ def seam_panel() -> Panel:
         for lines, boxes, labels in ((kept, drawn, objects.labels), (dropped, seen.boxes[new], seen.labels[new])):
             lines.set_segments([outline(box) for box in boxes])
             lines.set_color([class_style(label)[0] for label in labels] or BLACK)
-        pieces, overlap = pieces_of_sofa(now, extension, threshold)
-        for name, piece in zip_longest(names, pieces):
+        pieces, overlap = measures.pieces_of_sofa(now, extension, threshold)
+        for name, piece in zip(names, [*pieces, *[None] * len(names)], strict=False):
             name.set_text(f"sofa {piece.score:.1f}" if piece else "")
-            u_min, v_min, _, _ = (
-                (where_they_count(piece.box, width) if extension else piece.box) if piece else np.zeros(4)
-            )
-            name.set_position((max(u_min, 0), v_min - 6))
+            if piece:
+                u_min, v_min, _, _ = where_they_count(piece.box, width) if extension else piece.box
+                name.set_position((max(u_min, 0), v_min - 6))
         way = f"{'with' if extension else 'without'} the extension, threshold {threshold:.2f}"
         place = f"seam at {cut:.0f} % of the sofa, {way}"
-        numbers = (
-            f"boxes on this sofa: {len(pieces)}; best overlap with its exact box (IoU) {overlap:.2f}; "
-            f"in the image: {len(seen.boxes)} boxes, {len(objects.boxes)} objects in the end"
-        )
-        return Drawing(live.png(), f"A panorama with the boxes of detected objects. {place}", f"{place}\n{numbers}")
+        of_sofa = f"boxes on this sofa: {len(pieces)}; best overlap with its exact box (IoU) {overlap:.2f}"
+        of_all = f"in the image: {len(seen.boxes)} boxes, {len(objects.boxes)} objects in the end"
+        alt = f"A panorama with the boxes of detected objects. {place}"
+        return Drawing(live.png(), alt, f"{place}\n{of_sofa}; {of_all}")
 
     return Panel("12 slide the seam", SEAM_CONTROLS, draw, photograph=True)
 
@@ -236,11 +227,9 @@ def where_they_count(boxes: np.ndarray, width: int) -> np.ndarray:
 def hue_panel() -> Panel:
     """An object, and how much of its exact box is used: its hues as a histogram, their mean on the circle and plain."""
     image = the_image()
-    things = {
-        f"{thing.number}: {thing.label}{'' if thing.visible_fraction > 0.9 else ', partly hidden'}": thing
-        for thing in sorted(the_pair().upper_objects, key=lambda thing: thing.number)
-        if is_large(thing)
-    }
+    large = sorted(filter(measures.is_large, the_pair().upper_objects), key=lambda thing: thing.number)
+    hidden = ["" if thing.visible_fraction > 0.9 else ", partly hidden" for thing in large]
+    things = {f"{thing.number}: {thing.label}{note}": thing for thing, note in zip(large, hidden, strict=True)}
     figure, (close, histogram) = new_figure(1, 2, size=(9.4, 3.4))
     close.get_gridspec().set_width_ratios([1, 1.9])
     picture = close.imshow(np.zeros((CROP, CROP, 3), np.uint8), extent=(0, 1, 1, 0))
@@ -263,7 +252,7 @@ def hue_panel() -> Panel:
         picture.set_data(crop)
         for line, frame in ((whole, box), (part, used)):
             line.set_data(*((outline(frame) - corner) / side).T)
-        hues, saturations = hues_and_saturations(image, used)
+        hues, saturations = measures.hues_and_saturations(image, used)
         weights, _ = np.histogram(hues, N_BINS, (0, 360), weights=saturations)
         for bar, weight in zip(bars, weights / max(weights.sum(), 1e-9), strict=True):
             bar.set_height(weight)
