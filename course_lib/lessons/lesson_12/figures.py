@@ -105,11 +105,9 @@ def training_figure(taught: measures.TrainingPicture, chosen: int) -> Figure:
         close.add_patch(Rectangle(centre - shapes[k] / 2, *shapes[k], fill=False, linestyle="--", **look))
     close.add_patch(Rectangle(low, *size, edgecolor=class_style(label)[0], linewidth=2.4, fill=False))
     class_legend(figure, taught.labels)
-    return described(
-        figure,
-        "A photograph of a generated room with the exact boxes of its furniture; close up, a plant over a grid of "
-        "cells, three of them marked, and three dashed rectangles of different shape about its centre.",
-    )
+    alt = "A photograph of a generated room with the exact boxes of its furniture; close up, a plant over a grid of "
+    alt += "cells, three of them marked, and three dashed rectangles of different shape about its centre."
+    return described(figure, alt)
 
 
 def threshold_figure(scores: dict[float, measures.ThresholdScore], chosen: float) -> Figure:

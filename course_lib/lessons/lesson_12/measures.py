@@ -6,7 +6,6 @@ import functools
 import json
 from collections import namedtuple
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -62,24 +61,15 @@ def true_object(number: int) -> TrueObject:
     return next(thing for thing in the_pair().upper_objects if thing.number == number)
 
 
-class Found(NamedTuple):
+class Found(namedtuple("Found", "boxes scores labels")):
     """Boxes `(n, 4)` in edge coordinates, with a score and a label each `(n,)`."""
-
-    boxes: np.ndarray
-    scores: np.ndarray
-    labels: np.ndarray
 
     def above(self, threshold: float) -> Found:
         return Found(*(values[self.scores >= threshold] for values in self))
 
 
-class Cut(NamedTuple):
-    """The panorama rolled so that the seam cuts the sofa, and what the network sees, without and with the extension."""
-
-    image: np.ndarray
-    sofa: np.ndarray  # `(4,)` its exact box there
-    plain: Found
-    extended: Found
+class Cut(namedtuple("Cut", "image sofa plain extended")):
+    """The panorama with the seam through the sofa, its exact box, and what is seen without and with the extension."""
 
     def objects(self, extension: bool, threshold: float) -> Found:
         """Return what comes out in the end: one box for each object, 0 <= u_min < W."""
@@ -92,14 +82,13 @@ class Cut(NamedTuple):
 @functools.cache
 def cut_sofa(percent: int) -> Cut:
     """Cut at so many percent of the sofa's width; the network runs twice."""
-    (u_min, _, u_max, _), width = true_object(SOFA).visible_box, the_image().shape[1]
-    shift = round(width - u_min - percent / 100 * (u_max - u_min))
+    box, width = true_object(SOFA).visible_box, the_image().shape[1]
+    shift = round(width - box[0] - percent / 100 * (box[2] - box[0]))
     rolled, found = np.roll(the_image(), shift, axis=1), []
     for seen in (rolled, extend_seam(rolled)):
         boxes, scores, classes = keen_detector().detect_in_plane(seen)
         found.append(Found(boxes, scores, np.array(keen_detector().labels)[classes]))
-    sofa = np.add(true_object(SOFA).visible_box, [shift, 0, shift, 0])
-    return Cut(rolled, wrapped_box(sofa, width), *found)
+    return Cut(rolled, wrapped_box(np.add(box, [shift, 0, shift, 0]), width), *found)
 
 
 def said_of_the_sofa(cut: Cut, extension: bool, threshold: float) -> list[OnSofa]:

@@ -120,16 +120,12 @@ def triangle_figure(horizontal_range: float, height: float, upper_height: float,
     axes.plot([horizontal_range, horizontal_range], [-0.12, height], color="0.7", linewidth=0.8)
     axes.set(title="Seen from the side: two cameras and a point", xlabel="horizontal range [m]", ylabel="height [m]")
     axes.set(xlim=(-0.75, horizontal_range + 0.4), ylim=(-0.2, upper_height + 0.3), aspect="equal")
-    return described(
-        figure,
-        "A triangle of the upper camera, the lower camera and a point. The baseline B is its left side; the ray d "
-        "from the upper camera drops by the angle e_u, that from the lower camera by the smaller e_l.",
-    )
+    alt = "A triangle of the upper camera, the lower camera and a point. The baseline B is its left side; the ray d "
+    alt += "from the upper camera drops by the angle e_u, that from the lower camera by the smaller e_l."
+    return described(figure, alt)
 
 
-def ellipse_figure(
-    place: np.ndarray, covariance: np.ndarray, samples: np.ndarray, ways: np.ndarray, sigmas: np.ndarray
-) -> Figure:
+def ellipse_figure(place, covariance: np.ndarray, samples: np.ndarray, ways: np.ndarray, sigmas: np.ndarray) -> Figure:
     """Return the error ellipse from above, in the room and drawn large, with its two axes.
 
     place: `(3,)`, covariance: `(3, 3)` of it, samples: `(n, 3)` noisy measurements, metres in the upper camera's frame.
@@ -156,11 +152,9 @@ def ellipse_figure(
     large.set(ylabel="across it, left [cm]", xlim=(-330 * sigmas[1], 330 * sigmas[1]))
     large.set(ylim=(-400 * sigmas[0], 550 * sigmas[0]))
     large.legend(loc="upper center", fontsize=8, ncols=2)
-    return described(
-        figure,
-        "From above: a ray from the rig to the sofa, and around the sofa a needle along the ray. Drawn large: 400 "
-        "dots, the ellipses of one and two sigma, and their two axes, along the ray and across it.",
-    )
+    alt = "From above: a ray from the rig to the sofa, and around the sofa a needle along the ray. Drawn large: 400 "
+    alt += "dots, the ellipses of one and two sigma, and their two axes, along the ray and across it."
+    return described(figure, alt)
 
 
 def triangulation_panel() -> Panel:
@@ -193,8 +187,8 @@ def triangulation_panel() -> Panel:
             e = np.arctan2(z - height, rho) + np.array([-noise, noise])
             wedge.set_xy([(0, height), *((12 * np.cos(a), height + 12 * np.sin(a)) for a in e)])
         cameras.set_data([0, 0], [camera, camera - baseline])
-        clouds[0].set_data(np.hypot(cloud[:, 0], cloud[:, 1]), cloud[:, 2] + camera)
-        clouds[1].set_data(cloud[:, 0], cloud[:, 1])
+        clouds[0].set_data(np.hypot(*cloud[:, :2].T), cloud[:, 2] + camera)
+        clouds[1].set_data(*cloud[:, :2].T)
         objects[0].set_data([rho], [z])
         objects[1].set_data([x], [y])
         ray.set_data([0, x], [0, y])
