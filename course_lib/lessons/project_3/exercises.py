@@ -13,10 +13,7 @@ from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d as rotation
 
 
 def scene(rng: np.random.Generator, n: int, unseen: int, theta: float | None = None) -> tuple:
-    """A pose, n places seen from it with their noise, their covariances, and the landmarks, of which n are seen first.
-
-    The covariances are those of a stereo camera: they grow with the distance, and along the ray with its square.
-    """
+    """A pose, n places as a stereo camera sees them from there, their covariances, and n + unseen landmarks."""
     landmarks = rng.uniform(0, 6, (n + unseen, 2))
     pose = np.array([*rng.uniform(1, 5, 2), rng.uniform(-np.pi, np.pi) if theta is None else theta])
     places = (landmarks[:n] - pose[:2]) @ rotation(pose[2])
@@ -53,9 +50,7 @@ def hypotheses(places, labels, landmarks, map_labels, tolerance):
 
 def verify_hypotheses(arguments: tuple, answer) -> str | None:
     """Return what is wrong with a set of poses, which may come in any order; None if nothing is."""
-    wanted, poses = hypotheses(*arguments), as_numbers(answer)
-    if poses is None:
-        return "Return an array (h, 3): x, y, theta of every pose."
+    wanted, poses = hypotheses(*arguments), np.asarray(as_numbers(answer))
     if not poses.size and not wanted.size:
         return None
     if poses.ndim != 2 or poses.shape[1] != 3:
@@ -74,8 +69,7 @@ def look_alikes(rng: np.random.Generator) -> tuple:
     n = int(rng.integers(3, 6))
     _, places, _, landmarks = scene(rng, n, int(rng.integers(1, 4)))
     labels = rng.choice(["sofa", "chair"], len(landmarks))
-    landmarks[1] = landmarks[0] + rng.uniform(0.15, 0.25, 2)
-    labels[1] = labels[0]
+    labels[1], landmarks[1] = labels[0], landmarks[0] + rng.uniform(0.15, 0.25, 2)
     places[1] = places[0] + rng.uniform(0.1, 0.2, 2)
     return places, labels[:n], landmarks, labels, float(rng.uniform(0.2, 0.8))
 
@@ -125,17 +119,17 @@ def refit(start, places, covariances, targets):
 def verify_refit(arguments: tuple, answer) -> str | None:
     """Return what is wrong with a pose; None if its weighted sum of squares is the least, as far as noise can tell."""
     _, places, covariances, targets = arguments
-    pose = as_numbers(answer)
-    if pose is None or pose.size != 3:
+    pose = np.asarray(as_numbers(answer)).ravel()
+    if pose.size != 3:
         return "Return three numbers: x, y, theta."
     if not np.isfinite(pose).all():
         return "There is a NaN or an infinity in your pose."
-    if abs(pose.flat[2]) > np.pi + 1e-9:
+    if abs(pose[2]) > np.pi + 1e-9:
         return "theta from -pi to pi, please."
-    off = [places - (targets - (x, y)) @ rotation(theta) for x, y, theta in (pose.ravel(), refit(*arguments))]
+    off = [places - (targets - (x, y)) @ rotation(theta) for x, y, theta in (pose, refit(*arguments))]
     yours, least = (np.einsum("ni,nij,nj->", one, np.linalg.inv(covariances), one) for one in off)
-    if yours <= least + 0.02:
-        return None  # the noise alone makes this sum 2 n - 3
+    if yours <= least + 0.02:  # the noise alone makes this sum 2 n - 3
+        return None
     return "Another pose has a smaller weighted sum of squares than yours: is every step a step down, to the end?"
 
 
@@ -161,30 +155,26 @@ def confidence(poses, scores, nothing):
 def scored_poses(rng: np.random.Generator, height: float = 0.0) -> tuple:
     """The best pose, near copies of it, the same place the other way round, and true rivals."""
     best = np.array([*rng.uniform(1, 5, 2), rng.choice([np.pi - 0.02, rng.uniform(-3, 3)])])
-    near = best + rng.uniform(-0.05, 0.05, (3, 3)) + [[0, 0, 0], [0, 0, 0.04], [0, 0, -0.04]]
-    turned = best + np.array([0.1, 0.0, rng.uniform(1, 2)])
-    poses = np.vstack([best, near, turned, np.column_stack([rng.uniform(7, 9, (3, 2)), rng.uniform(-3, 3, 3)])])
+    near, turned = best + rng.uniform(-0.08, 0.08, (3, 3)), best + [0.1, 0.0, rng.uniform(1, 2)]
+    poses = np.vstack([best, near, turned, rng.uniform((7, 7, -3), (9, 9, 3), (3, 3))])
     poses[:, 2] = wrap_angle(poses[:, 2])
-    top = height + rng.uniform(12, 18)
-    scores = top - np.concatenate([[0.0], rng.uniform(0.2, 1, 3), rng.uniform(1, 3, 1), rng.uniform(1.5, 6, 3)])
-    order = rng.permutation(len(poses))
+    top, order = height + rng.uniform(12, 18), rng.permutation(len(poses))
+    scores = top - rng.uniform([0, *[0.2] * 3, 1, *[1.5] * 3], [0, *[1] * 3, 3, *[6] * 3])
     return poses[order], scores[order], float(top - rng.uniform(1, 6))
 
 
 # fmt: off
 EXERCISES = [
-    Exercise("P3.1", squared_distances, lambda rng: scene(rng, *rng.integers((2, 1), (6, 5))), "warm-up", cases={
-        "nothing seen": lambda rng: scene(rng, 0, 4),
-    }, mistakes="""
+    Exercise("P3.1", squared_distances, lambda rng: scene(rng, *rng.integers((2, 1), (6, 5))), "warm-up",
+             cases={"nothing seen": lambda rng: scene(rng, 0, 4)}, mistakes="""
         R @ covariances @ R.T => covariances
         R @ covariances @ R.T => R.T @ covariances @ R
         The covariances are in the body frame, the residuals on the map: turn them, R C R^T.
         places @ R.T => places @ R
         R is transposed: (1, 0) in the body frame must go to (cos theta, sin theta) on the map.
-        places @ R.T => places
-        The places are not turned by the pose's heading.
         + pose[:2] =>
-        The places are turned, but not moved to where the rig stands.
+        places @ R.T => places
+        Turn the places by the pose's heading, and move them to where the rig stands.
         + 0.02**2 * np.eye(2) =>
         The map's own 2 cm are missing: S = R C R^T + 0.02^2 I.
         np.linalg.inv(S) => S
@@ -236,13 +226,10 @@ EXERCISES = [
         np.full(len(squared), -1) => np.zeros(len(squared), int)
         An observation without a landmark gets -1, not 0: landmark 0 is one.
     """),
-    Exercise("P3.4", refit, matched_places, "challenge", verify=verify_refit, tolerance=1e-4, cases={
-        "heading at the wrap": lambda rng: matched_places(rng, np.pi - 0.01),
-    }, mistakes="""
+    Exercise("P3.4", refit, matched_places, "challenge", verify=verify_refit, tolerance=1e-4,
+             cases={"heading at the wrap": lambda rng: matched_places(rng, np.pi - 0.01)}, mistakes="""
         np.linalg.inv(covariances) => np.tile(np.eye(2), (len(places), 1, 1))
         All pairs count alike in yours, as in the paper's fit. The covariances are not used.
-        ... => return fit_rigid_2d(places, targets, covariances=covariances)
-        You hold the weights fixed in each step. They turn with the pose: the weighted sum can be less.
         inv(covariances) => inv(np.trace(covariances, axis1=1, axis2=2)[:, None, None] * np.eye(2))
         One weight for each pair is not enough: a place is sure across its ray and unsure along it.
         places - (targets - pose[:2]) @ rotation(pose[2]) => places @ rotation(pose[2]).T + pose[:2] - targets
@@ -253,14 +240,17 @@ EXERCISES = [
         Your theta runs from 0 to 2 pi. The task asks for -pi to pi.
         ... => return tuple(start)
         Yours is the start, unchanged.
-    """),
+    """, functions={
+        lambda start, places, covariances, targets: fit_rigid_2d(places, targets, covariances=covariances):
+        "You hold the weights fixed in each step. They turn with the pose: the weighted sum can be less.",
+    }),
     Exercise("P3.5", confidence, scored_poses, cases={
         "high scores": lambda rng: scored_poses(rng, 3000.0),
         "far below nothing": lambda rng: (*scored_poses(rng)[:2], 50.0),
         "no pose": lambda rng: (np.zeros((0, 3)), np.zeros(0), 5.0),
         "one answer": lambda rng: (np.array([[2.0, 2.0, 3.12], [2.1, 2.0, -3.13]]), np.array([9.0, 8.5]), 6.0),
         "same place or same heading": lambda rng: (
-            np.array([[0, 0, 0], [2, 0, 0], [0, 0, 2], [2, 1, 1]]) + rng.uniform(0, 1, 3), np.array([10, 9, 8, 7]), 4.0),
+            np.array([[0, 0, 0], [2, 0, 0], [0, 0, 2], [2, 1, 1]]) + rng.uniform(0, 1, 3), np.arange(10.0, 6, -1), 4.0),
     }, mistakes="""
         far | turned => np.arange(len(poses)) != best
         A pose within 0.5 m and 10 degrees of the best is the same answer, and no rival of it.
@@ -282,7 +272,5 @@ EXERCISES = [
         The runner-up and `nothing` both doubt the best: their exponentials add. You take the greater one.
         - scores[best]) / 2) => ) / 2) / np.exp(scores[best] / 2)
         exp(3000) is infinite, and inf / inf is NaN. Only differences to the best score need an exponential.
-        return 0.0 => return 1.0
-        Without any pose there is nothing to be sure of: 0.
     """),
 ]

@@ -27,19 +27,20 @@ def prepare(seed: int) -> Task:
     return Task(tuple((one, room.semantic_map) for one in thinned), np.array([view.pose for view in views]))
 
 
-def checked_pairs(answer: object, n_observations: int, n_landmarks: int) -> list[tuple[int, int]]:
-    """Return the pairs of an answer. Raises `AnswerError` if they are no pairs of indices, or not one-to-one."""
+def checked_pairs(answer: object, sizes: tuple[int, int]) -> list[tuple[int, int]]:
+    """Return the pairs of an answer. Raises `AnswerError` if they are no pairs of indices, or not one-to-one.
+
+    sizes: numbers of observations and of landmarks.
+    """
     try:
         pairs = [(int(i), int(j)) for i, j in answer]
     except (TypeError, ValueError):
         raise AnswerError("returns for one view neither None nor a list of pairs (observation, landmark)") from None
-    for side, (a, name, size) in enumerate((("an", "observation", n_observations), ("a", "landmark", n_landmarks))):
-        named = [pair[side] for pair in pairs]
+    for named, a, name, size in zip(zip(*pairs), ("an", "a"), ("observation", "landmark"), sizes, strict=False):
         if len(set(named)) < len(named):
             raise AnswerError(f"names one {name} twice: pairs are one-to-one")
-        for index in named:
-            if not 0 <= index < size:
-                raise AnswerError(f"names {a} {name} that there is not: {index}, of {size} counted from 0")
+        if wrong := [index for index in named if not 0 <= index < size]:
+            raise AnswerError(f"names {a} {name} that there is not: {wrong[0]}, of {size} counted from 0")
     return pairs
 
 
@@ -49,13 +50,13 @@ def points_of(answer: object, observations: tuple, semantic_map, true_pose: np.n
     100 for the true pose, falling to 50 at half a metre; `WRONG_POINTS` beyond that, beyond 10 degrees, and if no pose
     fits; 0 for None and for fewer than two pairs.
     """
-    pairs = [] if answer is None else checked_pairs(answer, len(observations), len(semantic_map))
+    pairs = [] if answer is None else checked_pairs(answer, (len(observations), len(semantic_map)))
     if len(pairs) < 2:
         return 0.0
-    chosen = [observations[i] for i, _ in pairs]
-    places, covariances = [[one.x, one.y] for one in chosen], np.array([one.covariance for one in chosen])
+    places = np.array([[observations[i].x, observations[i].y] for i, _ in pairs])
+    covariances = np.array([observations[i].covariance for i, _ in pairs])
     try:
-        pose = fit_rigid_2d(np.array(places), semantic_map.positions[[j for _, j in pairs]], covariances=covariances)
+        pose = fit_rigid_2d(places, semantic_map.positions[[j for _, j in pairs]], covariances=covariances)
     except RigidFitError:
         return WRONG_POINTS
     errors = pose_errors(pose, true_pose)
