@@ -155,7 +155,7 @@ def confidence(poses, scores, nothing):
 def scored_poses(rng: np.random.Generator, height: float = 0.0) -> tuple:
     """The best pose, near copies of it, the same place the other way round, and true rivals."""
     best = np.array([*rng.uniform(1, 5, 2), rng.choice([np.pi - 0.02, rng.uniform(-3, 3)])])
-    near, turned = best + rng.uniform(-0.08, 0.08, (3, 3)), best + [0.1, 0.0, rng.uniform(1, 2)]
+    near, turned = best + rng.uniform(-0.08, 0.08, (3, 3)), best + np.array([0.1, 0, rng.uniform(1, 2)])
     poses = np.vstack([best, near, turned, rng.uniform((7, 7, -3), (9, 9, 3), (3, 3))])
     poses[:, 2] = wrap_angle(poses[:, 2])
     top, order = height + rng.uniform(12, 18), rng.permutation(len(poses))
@@ -170,8 +170,6 @@ EXERCISES = [
         R @ covariances @ R.T => covariances
         R @ covariances @ R.T => R.T @ covariances @ R
         The covariances are in the body frame, the residuals on the map: turn them, R C R^T.
-        places @ R.T => places @ R
-        R is transposed: (1, 0) in the body frame must go to (cos theta, sin theta) on the map.
         + pose[:2] =>
         places @ R.T => places
         Turn the places by the pose's heading, and move them to where the rig stands.
@@ -236,10 +234,6 @@ EXERCISES = [
         The covariances are in the body frame: turn them onto the map, or the residuals back.
         np.linalg.inv(covariances) => covariances
         You weigh with the covariances. What is unsure must count less: use their inverses.
-        wrap_angle(theta) => wrap_angle(theta) % (2 * np.pi)
-        Your theta runs from 0 to 2 pi. The task asks for -pi to pi.
-        ... => return tuple(start)
-        Yours is the start, unchanged.
     """, functions={
         lambda start, places, covariances, targets: fit_rigid_2d(places, targets, covariances=covariances):
         "You hold the weights fixed in each step. They turn with the pose: the weighted sum can be less.",
@@ -268,8 +262,6 @@ EXERCISES = [
         The runner-up is missing.
         np.exp((second - scores[best]) / 2) => np.exp((scores[far | turned] - scores[best]) / 2).sum()
         You add up all rivals; among them are copies of one answer. Only the best of them counts.
-        second - scores => max(second, nothing) - scores and also + np.exp((nothing - scores[best]) / 2) =>
-        The runner-up and `nothing` both doubt the best: their exponentials add. You take the greater one.
         - scores[best]) / 2) => ) / 2) / np.exp(scores[best] / 2)
         exp(3000) is infinite, and inf / inf is NaN. Only differences to the best score need an exponential.
     """),
