@@ -9,13 +9,9 @@ from scipy.optimize import linear_sum_assignment, minimize
 
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo import fit_rigid_2d
+from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d as turn
 
 PI = math.pi
-
-
-def turn(theta):
-    c, s = math.cos(theta), math.sin(theta)
-    return np.array([[c, -s], [s, c]])
 
 
 def distances_by_loops(pose, places, covariances, landmarks):
@@ -109,8 +105,7 @@ def refit_by_gauss_and_newton(start, places, covariances, targets):
 def sure_by_loop(poses, scores, nothing):
     if len(scores) == 0:
         return 0
-    best = max(range(len(scores)), key=lambda k: scores[k])
-    second = -math.inf
+    best, second = max(range(len(scores)), key=lambda k: scores[k]), -math.inf
     for pose, score in zip(poses, scores, strict=True):
         turned = abs(cmath.phase(cmath.exp(1j * (pose[2] - poses[best][2]))))
         if math.dist(pose[:2], poses[best][:2]) > 0.5 or turned > math.radians(10):
