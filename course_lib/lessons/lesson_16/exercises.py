@@ -155,13 +155,13 @@ def needles(rng: np.random.Generator) -> tuple:
 
 def round_errors(rng: np.random.Generator) -> tuple:
     source, theta, covariances = needles(rng)
-    return source + [4.0, 0.0], theta, 0 * covariances + 0.01 * np.eye(2)
+    return source + np.array([4.0, 0.0]), theta, 0 * covariances + 0.01 * np.eye(2)
 
 
 # fmt: off
 EXERCISES = [
-    Exercise("16.1", place_from_heading, lambda rng: (*noisy_points(rng), rng.uniform(-np.pi, np.pi)), "warm-up", cases={
-        "one point": lambda rng: (rng.uniform(-4, 4, (1, 2)), rng.uniform(0, 6, (1, 2)), rng.uniform(-np.pi, np.pi)),
+    Exercise("16.1", place_from_heading, lambda rng: (*noisy_points(rng), rng.uniform(-3, 3)), "warm-up", cases={
+        "one point": lambda rng: (rng.uniform(-4, 4, (1, 2)), rng.uniform(0, 6, (1, 2)), rng.uniform(-3, 3)),
     }, mistakes="""
         R @ source => R.T @ source
         You turn by -theta. Check the signs in R, or on which side R stands.
@@ -258,7 +258,7 @@ EXERCISES = [
     """),
     Exercise("16.5", pose_sigmas, needles, "challenge", cases={
         "round errors": round_errors,
-        "two points": lambda rng: (rng.uniform(-2, 2, 2) + [[3, 0], [0, 2]], 0.0, np.tile(0.04 * np.eye(2), (2, 1, 1))),
+        "two points": lambda rng: (rng.uniform(-2, 2, 2) + 3 * np.eye(2), 0.0, np.tile(0.04 * np.eye(2), (2, 1, 1))),
     }, mistakes="""
         covariances, row) => np.array([np.diag(np.diag(c)) for c in covariances]), row)
         You use the variances alone. But a needle's x and y err together: take the whole matrix.
