@@ -5,6 +5,7 @@ import numpy as np
 from course_lib.lessons.kit.exercises import Exercise
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 
+
 def colour_cost(hue_seen, saturation_seen, hue_map, saturation_map):
     """Cost (n,) of the colours, nats: 0 where they are the same, 3 at most."""
     apart = np.abs(hue_seen - hue_map)
