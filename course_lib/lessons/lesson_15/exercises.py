@@ -24,9 +24,6 @@ def hues(rng: np.random.Generator) -> tuple:
     return seen, on_map, rng.uniform(0.5, 3)
 
 
-ENDS = np.array([0.0, 360.0, 0.0, 180.0, 90.0, 270.0, np.nan]), np.array([0.0, 0.0, 360.0, 0.0, 270.0, 90.0, np.nan])
-
-
 def distance_term(x_c, x_m, p_d):
     """Distance term (n, m) of eq. (1) with absolute value; the divisor is at least 0.1 m."""
     # Lengths first, then a column against a row.
@@ -42,11 +39,6 @@ def observed_and_mapped(rng: np.random.Generator) -> tuple:
     if rng.random() < 0.5:
         x_m[-1] = x_m[:-1].mean(axis=0) + rng.uniform(-0.02, 0.02, 2)
     return rng.uniform(-3, 3, (n, 2)), x_m, rng.uniform(0.5, 3)
-
-
-def a_landmark_at_the_centroid(rng: np.random.Generator) -> tuple:
-    x_m = np.array([[0.0, 0.002], [0.5, 0.0], [-0.5, 0.0], [0.0, 3.0], [0.0, -3.0]]) + rng.uniform(0, 5, 2)
-    return rng.uniform(-3, 3, (4, 2)), x_m, 1.5
 
 
 def match_with_margins(cost):
@@ -98,7 +90,8 @@ def places_some_hidden(rng: np.random.Generator) -> tuple:
 # fmt: off
 EXERCISES = [
     Exercise("15.1", hue_term, hues, "warm-up", cases={
-        "ends of the circle, opposite hues, both grey": lambda rng: (*ENDS, rng.uniform(0.5, 3)),
+        "ends of the circle, opposite hues, both grey": lambda rng: (
+            np.array([0, 360, 0, 180, 90, 270, np.nan]), np.array([0, 0, 360, 0, 270, 90, np.nan]), 1.5),
     }, mistakes="""
         np.minimum(apart, 360 - apart) => apart
         350 and 10 degrees are 20 degrees apart, not 340. Go around the circle the shorter way.
@@ -109,8 +102,6 @@ EXERCISES = [
         One grey side is enough, the observed object or the landmark: the term is 0 where *either* hue is NaN.
         np.minimum(apart, 360 - apart) => apart and also np.nan_to_num( => (
         Two things are missing: the shorter way around the circle, and 0 where a hue is NaN.
-        / 360) => / 180)
-        You divide by 180. That is the better scale, but eq. (1) divides by 360.
         p_h * =>
         The weight p_h is a factor: a larger weight must make the term larger.
         ... => return hue_term(np.nan_to_num(hue_seen), np.nan_to_num(hue_map), p_h)
@@ -124,7 +115,8 @@ EXERCISES = [
         For grey you charge the largest cost. But nothing is known of its hue, so the term is 0.
     """),
     Exercise("15.2", distance_term, observed_and_mapped, cases={
-        "a landmark at the centroid": a_landmark_at_the_centroid,
+        "a landmark at the centroid": lambda rng: (
+            rng.uniform(-3, 3, (4, 2)), np.array([[2, 1.002], [2.5, 1], [1.5, 1], [2, 4], [2, -2]]), 1.5),
         "all observed in one place": lambda rng: (np.tile(rng.uniform(-3, 3, 2), (3, 1)), rng.uniform(0, 6, (5, 2)), 1),
     }, mistakes="""
         np.abs => np.positive
@@ -145,8 +137,6 @@ EXERCISES = [
         The centroid is a point. Take the mean over the points (axis 0), not over x and y.
         np.abs(far_c[:, None] - far_m) => np.linalg.norm((x_c - x_c.mean(0))[:, None] - x_m + x_m.mean(0), axis=2)
         You subtract vectors of two different frames. Take their lengths first, then the difference.
-        p_d * =>
-        The weight p_d is missing.
     """),
     Exercise("15.3", match_with_margins, costs, cases={
         "unlike classes": unlike_classes, "one row and one column": lambda rng: (np.array([[0.3]]),),
@@ -162,20 +152,16 @@ EXERCISES = [
         You serve the rows in their order. But the cheapest of *all* open combinations comes first.
         np.delete(table[i], j) => np.delete(cost[i], j)
         Your margins count columns that were taken before. Only open columns are a choice.
-        np.delete(table[i], j) => np.delete(table[:, j], i)
-        You compare with other rows for the same column. The task asks for the same row's next best column.
         initial=np.inf) - table[i, j] => initial=np.inf)
         That is the next best cost itself. How much dearer is it than the cost of the column that was taken?
         np.full(len(cost), np.nan) => np.zeros(len(cost))
         A row without a column has no margin, so it is NaN. A margin of 0 would mean that two columns cost the same.
         np.full(len(cost), -1) => np.zeros(len(cost), int)
         Rows that get no column must hold -1. Yours hold 0, which is a column.
-        table[i, :] = table[:, j] => table[:, j]
         table[i, :] = table[:, j] => table[i, :]
         You strike out only the row or only the column, so a matched one is chosen again. Strike out both.
         min(cost.shape) => len(cost) and also - table[i, j] => - table[i, j] if np.isfinite(table[i, j]) else np.nan
         When all is struck out, argmin gives 0, and a row is matched once more. Stop when one side is used up.
-        table[:, j] = np.inf => table[:, j] = 100
         table[:, j] = np.inf => table[:, j] = 1000
         You strike out with a number that may be the least again. What is never the least?
     """),
@@ -195,13 +181,9 @@ EXERCISES = [
         The factor for drawing without replacement is missing: with nobody hidden, the centroid stays.
         / (n - 1) => / n
         Nearly. Two of the seen objects are never the same one, so their places are not independent.
-        np.sqrt(spread => np.sqrt(spread / 2
-        That is the spread along one axis. A distance takes x and y together.
         (n * (n - n_hidden)) => n**2
         You take the hidden ones away but divide by all n. The centroid of the seen is a mean over n - k.
         n_hidden / (n * (n - n_hidden)) => (n - n_hidden) / (n * n_hidden)
         You exchanged the seen and the hidden. With most objects seen, the centroid hardly moves.
-        n_hidden / (n * (n - n_hidden)) => (n - 1) / n
-        That is how far the objects are from their centroid. The mean of many of them is nearer.
     """),
 ]

@@ -44,33 +44,25 @@ def weights_panel() -> Panel:
     heat.set(title="Penalty of every combination", xlabel="landmark of the map [-]", ylabel="observed object [-]")
     figure.colorbar(image, ax=heat, label="penalty [-]", shrink=0.9).set_ticks([0, 0.1, 0.5, 1, 2, 4, 6])
     done = heat.add_collection(LineCollection([], colors="white", linewidths=0.7, alpha=0.8))
-    cells = [
-        *heat.plot([], [], "o", mfc="none", mec="white", markersize=7, mew=1.8),
-        *heat.plot([], [], "X", color=figures.VERMILION, mec="white", markersize=9),
-    ]
+    cells = heat.plot([], [], "o", mfc="none", mec="white", markersize=7, mew=1.8)
+    cells += heat.plot([], [], "X", color=figures.VERMILION, mec="white", markersize=9)
     map_axes(plan, room, "Object (x) to its landmark")
     for j, place in enumerate(room.positions):
         plan.annotate(str(j), place, (5, 4), textcoords="offset points", fontsize=7)
     plan.plot(*room.centroid, "+", color=figures.BLACK, markersize=13, markeredgewidth=1.8)
     (places,) = plan.plot([], [], "x", color="0.25", markersize=6, markeredgewidth=1.4)
-    lines = [
-        plan.add_collection(LineCollection([], colors=figures.GREEN, linewidths=2.2)),
-        plan.add_collection(LineCollection([], colors=figures.VERMILION, linewidths=1.6, linestyles="--")),
-    ]
+    looks = {"colors": figures.GREEN, "linewidths": 2.2}, {"colors": figures.VERMILION, "lw": 1.6, "linestyles": "--"}
+    lines = [plan.add_collection(LineCollection([], **look)) for look in looks]
     (camera,) = plan.plot([], [], "o", color=figures.BLACK, markersize=7)
     (seen_centre,) = plan.plot([], [], "P", color=figures.PURPLE, mec="white", markersize=10)
-    chosen = [
-        *rounds.plot([], [], "o", color=figures.BLUE, markersize=6, label="chosen, right"),
-        *rounds.plot([], [], "X", color=figures.VERMILION, markersize=8, label="chosen, wrong"),
-    ]
+    chosen = rounds.plot([], [], "o", color=figures.BLUE, markersize=6, label="chosen, right")
+    chosen += rounds.plot([], [], "X", color=figures.VERMILION, markersize=8, label="chosen, wrong")
     (second,) = rounds.plot([], [], "D", mfc="none", color="0.35", markersize=4, label="next best")
     rounds.set(title="Round by round", xlabel="round [-]", ylabel="penalty [-]", xlim=(0, n + 1), ylim=SHOWN)
     rounds.legend(loc="lower left", fontsize=7, framealpha=0.95)
     live = LiveFigure(figure, [image, done, *cells, *lines, places, camera, seen_centre, second, *chosen])
 
-    def draw(
-        p_obj: float, p_h: float, p_s: float, p_d: float, done_rounds: float, hidden: float, term: str, pair: str
-    ) -> Drawing:
+    def draw(p_obj, p_h, p_s, p_d, done_rounds, hidden, term, pair) -> Drawing:
         scene = room_scenes()[pair]
         ranges = [np.hypot(one.x, one.y) for one in scene.observations]
         kept = np.sort(np.argsort(ranges, kind="stable")[: len(ranges) - int(hidden)])

@@ -49,9 +49,7 @@ def fit_panel() -> Panel:
     lines = [measured, mover, marks, landed, rests, truth, fitted, rms_line, true_line, best]
     live = LiveFigure(figure, lines + numbers[0] + numbers[1])
 
-    def draw(
-        arrangement: str, moved: float, forward: float, left: float, noise: float, seed: float, heading: float
-    ) -> Drawing:
+    def draw(arrangement, moved, forward, left, noise, seed, heading) -> Drawing:
         target, pose = landmarks_of(arrangement), Pose2D(2.5, 2.5, float(wrap_angle(np.deg2rad(heading))))
         source, n = in_body_frame(target, pose) * [1, -1 if arrangement == MIRRORED else 1], len(target)
         source += noise * np.random.default_rng(int(seed)).standard_normal(source.shape)

@@ -97,8 +97,6 @@ EXERCISES = [
         One used pair, and wrong: that is unable all the same. Ask for unable before you ask for wrong pairs.
         (dx <= 2) & (dy <= 2) => ((dx <= 2) | (dy <= 2))
         Both errors must be within 2 m. With your | one of them is enough.
-        (n_wrong == 0) & (dx <= 2) & (dy <= 2) => (n_wrong == 0) | (dx <= 2) & (dy <= 2)
-        Correct needs three things at once: no wrong pair, x *and* y. With your | one of them is enough.
         n_wrong == 0 => n_wrong < n_used / 2
         You allow some wrong pairs, such as a minority. A single one makes a pose incorrect.
         n_used <= 1 => n_used < 1
@@ -133,10 +131,6 @@ EXERCISES = [
         You add the squares. The groups lie one beside the other: average with n, then add the means' part.
         squares / (n_a + n_b) => squares / (n_a + n_b - 1)
         You divide by n - 1. The paper's rows fit the divisor n.
-        (mean_a - mean) => mean_a and also (mean_b - mean) => mean_b
-        Your second number is a root mean square about zero. Subtract the common mean from each group's.
-        squares / (n_a + n_b) => squares
-        The sum of squares is not divided by the number of poses, n_a + n_b.
         np.sqrt(squares / (n_a + n_b)) => np.sqrt(squares) / (n_a + n_b)
         That is the standard error of the mean. The task asks how much single poses scatter.
     """),
@@ -157,8 +151,6 @@ EXERCISES = [
         Exactly one means that all the others are not seen: multiply by their probabilities.
         np.delete(q, k) => q
         You count the one that is seen among the unseen, too. Leave its own 1 - q out of the product.
-        none + sum => 1 - none - sum
-        Yours is the probability that a pose is *not* unable.
         ... => return unable_probability(1 - q)
         You took q for the probability of missing an object. It is the probability of seeing it.
         ... => return 1 - np.prod(1 - q)

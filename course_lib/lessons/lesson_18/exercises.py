@@ -158,8 +158,6 @@ EXERCISES = [
         s_h is at *least* 12 degrees, however colourful both are: the greater of the two numbers.
         return np.minimum(hue => return (hue and also / 2, 3) => / 2)
         The cost is the lesser of the sum and 3. A wrong colour never costs more.
-        hue + (( => hue, 3) + np.minimum(((
-        You cut a term off at 3 before you add. It is the sum that is at most 3.
         np.nan_to_num((apart / sigma) ** 2 / 2) => (apart / sigma) ** 2 / 2
         return np.minimum(hue => return ~np.isnan(apart) * np.minimum(hue
         Grey has no hue. Where either hue is NaN, the hue's term is 0, and the saturation still counts.
@@ -177,8 +175,6 @@ EXERCISES = [
         You subtract a place in the body frame from one on the map. Turn it by theta first.
         landmarks.mean(axis=0) - R @ seen.mean(axis=0) => landmarks[0] - R @ seen[0]
         You lay one end on its landmark, and then the other end takes the whole error. Lay middle on middle.
-        mean(axis=0) => sum(axis=0)
-        The middle of two points is half their sum.
         (theta + np.pi) % (2 * np.pi) - np.pi => theta
         theta is right but for whole turns. Bring it into the range from -pi to pi.
         np.arctan2(dv, du) - np.arctan2(dy, dx) => np.arccos((dx * du + dy * dv) / np.hypot(dx, dy) / np.hypot(du, dv))
@@ -209,8 +205,6 @@ EXERCISES = [
         Yours depends on the order of the rows: the first takes the column that a later one needs more.
         np.minimum(cost, 0) => -np.minimum(cost, 0)
         Yours makes the total large: linear_sum_assignment seeks the least, and gains are negative.
-        ... => j = cost.argmin(1); ok = cost.argmin(0)[j] == range(len(j)); return np.where(ok * cost.min(1) < 0, j, -1)
-        You match only those that are each other's best. A second choice can pay, too.
     """),
     Exercise("18.4", max_answered, judged_poses, cases={
         "the surest is wrong": the_surest_is_wrong, "the limit met exactly": the_limit_met_exactly,
@@ -232,8 +226,6 @@ EXERCISES = [
         You give the threshold. The task asks for the share of all poses that it answers.
         given.mean() => given.sum()
         You give a number of poses. The task asks for the share of all of them.
-        np.mean(~right => np.sum(~right
-        You compare a number of wrong answers with a share.
         given.mean() => np.mean(given & right)
         You count the right ones. The task asks for all that one threshold answers, right or wrong.
         ... => return np.mean(confidence > 0)
@@ -257,8 +249,6 @@ EXERCISES = [
         Left alone, i is clutter that is reported as this class. Its share belongs to the density.
         * e * p => * p
         If matched, the detector must give an object of j's class the class of i. That has a probability, too.
-        2 * np.log(ratio) => np.log(ratio)
-        The cost holds half of d squared: the 2 is lost on the way to d.
         np.maximum(2 * np.log(ratio), 0) => np.abs(2 * np.log(ratio))
         The answer is 0 where even a match exactly on its landmark does not pay.
         ratio), 0)) => ratio), 0)) * np.linalg.det(S)[:, None] ** (1 / (2 * k))
