@@ -47,14 +47,9 @@ def by_masks(cost):
         table.mask[i] = True
 
 
-def shift_by_listing(places, k):
-    off = [np.mean(seen, axis=0) - places.mean(axis=0) for seen in itertools.combinations(places, len(places) - k)]
-    return math.sqrt(np.mean(np.sum(np.square(off), axis=1)))
-
-
-def shift_by_pairs(places, k):
-    n = len(places)
-    return [np.sqrt(np.sum((places[:, None] - places) ** 2) / (2 * n * (n - 1)) * (1 / (n - k) - 1 / n))]
+def by_listing(places, k):
+    seen = itertools.combinations(places - places.mean(axis=0), len(places) - k)
+    return math.sqrt(np.mean([np.sum(np.mean(one, axis=0) ** 2) for one in seen]))
 
 
 RIGHT = [
@@ -65,6 +60,6 @@ RIGHT = [
     ("15.2", lambda c, m, p: np.float32(p * np.abs(far(c)[:, None] - far(m)) / np.maximum(far(m), 0.1))),
     *[("15.3", lambda cost, way=way: with_margins(cost, way)) for way in (by_lists, by_sorting)],
     ("15.3", lambda cost: tuple(np.array(one) for one in with_margins(cost, by_masks))),
-    ("15.4", shift_by_listing),
-    ("15.4", shift_by_pairs),
+    ("15.4", by_listing),
+    ("15.4", lambda s, k: [np.sqrt(np.cov(s.T).trace() * (1 / (len(s) - k) - 1 / len(s)))]),
 ]

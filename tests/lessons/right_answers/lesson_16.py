@@ -16,11 +16,6 @@ def centred(*sides):
     return [points - points.mean(axis=0) for points in sides]
 
 
-def scale_by_sums(s, m):
-    (a, b), (c, d) = (side.T for side in centred(s, m))
-    return np.sqrt(np.sum(a * c + b * d) ** 2 + np.sum(a * d - b * c) ** 2) / np.sum(a**2 + b**2)
-
-
 def scale_by_svd(s, m):
     a, b = centred(s, m)
     d = np.linalg.svd(b.T @ a, compute_uv=False)
@@ -62,11 +57,6 @@ def by_least_squares(s, m, w):
     return x, y, wrap_angle(theta)
 
 
-def bars_by_library(s, theta, covariances):
-    pose = Pose2D(0.0, 0.0, theta)
-    return np.sqrt(np.diag(fit_covariance(pose, s, pose.apply(s), noise=covariances)))
-
-
 def bars_by_differences(s, theta, covariances):
     """Move every coordinate of every point a little, and fit again."""
     steps = 1e-5 * np.eye(s.size).reshape(-1, *s.shape)
@@ -78,11 +68,12 @@ def bars_by_differences(s, theta, covariances):
 RIGHT = [
     ("16.1", lambda s, m, t: (m - turned(s, t)).mean(axis=0)),
     ("16.1", lambda s, m, t: (m.mean(axis=0) - turned(s.mean(axis=0)[None], t)[0]).tolist()),
-    *[("16.2", way) for way in (scale_by_sums, scale_by_svd, scale_by_search)],
+    ("16.2", lambda s, m: abs(np.vdot(*(z @ [1, 1j] for z in centred(s, m)))) / np.sum(centred(s)[0] ** 2)),
+    *[("16.2", way) for way in (scale_by_svd, scale_by_search)],
     ("16.3", lambda s, m: np.argmin([np.linalg.norm(rest) for rest in rests(s, m)])),
     ("16.3", lambda s, m: int(np.argmin([np.mean(rest**2) for rest in rests(s, m)]))),
     *[("16.4", way) for way in (by_complex_numbers, by_svd, by_least_squares)],
     ("16.4", lambda s, m, w: fit_rigid_2d(s, m, weights=w)),
-    ("16.5", bars_by_library),
+    ("16.5", lambda s, t, c: np.sqrt(np.diag(fit_covariance(Pose2D(0, 0, t), s, turned(s, t), noise=c)))),
     ("16.5", bars_by_differences),
 ]
