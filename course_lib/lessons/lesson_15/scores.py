@@ -11,12 +11,7 @@ from course_lib.experiments.intervals import bootstrap_percent
 from course_lib.lessons.kit.room_observations import MatchingScene, room_scenes
 from course_lib.lessons.kit.room_photographs import room_map
 from course_lib.spherical_stereo.pose.rigid_fit import RigidFitError, fit_rigid_2d
-from course_lib.spherical_stereo.semantic_map.association import (
-    Observation,
-    PenaltyWeights,
-    associate_greedy,
-    penalty_table,
-)
+from course_lib.spherical_stereo.semantic_map.association import PenaltyWeights, associate_greedy, penalty_table
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 PAIR = "03_b"  # thirteen of fourteen objects in view, nothing special (chosen)
@@ -28,7 +23,7 @@ TwoSearches = namedtuple("TwoSearches", "greedy_percent least_sum_percent gain_p
 
 
 def min_object_weight(
-    observations: Sequence[Observation], semantic_map: SemanticMap, weights: PenaltyWeights, term: str = "absolute"
+    observations: Sequence, semantic_map: SemanticMap, weights: PenaltyWeights, term: str = "absolute"
 ) -> float:
     """Return the p_obj above which no pair of unlike classes is cheaper than one of like classes, here.
 

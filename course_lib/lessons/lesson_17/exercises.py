@@ -27,13 +27,6 @@ def poses_of_every_kind(rng: np.random.Generator) -> tuple:
     return dx[order], dy[order], n_used[order], n_wrong[order]
 
 
-def close_calls(rng: np.random.Generator) -> tuple:
-    """Return poses that are wrong *and* unable; with all, one or most pairs wrong; with one or both errors large."""
-    dx = np.array([np.nan, np.nan, 0.1, 0.1, 0.1, 3.0, 3.0, 0.1, 2.0])
-    dy = np.array([np.nan, np.nan, 0.1, 0.1, 0.1, 3.0, 0.1, 3.0, 2.0])
-    return dx, dy, np.array([1, 0, 4, 9, 9, 9, 9, 9, 2]), np.array([1, 0, 4, 1, 6, 0, 1, 0, 0])
-
-
 def combined(n_a, mean_a, std_a, n_b, mean_b, std_b):
     """Mean and standard deviation of two groups taken together."""
     # Variance within the groups plus variance between their means.
@@ -75,12 +68,6 @@ def poses_with_errors(rng: np.random.Generator) -> tuple:
     return found, true
 
 
-def headings_of_half_a_turn(rng: np.random.Generator) -> tuple:
-    """Return headings that are found a little to the other side: errors of two degrees, not of 358."""
-    true = np.array([[1.0, 1.0, np.pi], [2.0, 1.0, np.pi], [3.0, 4.0, 0.0]])
-    return true + np.array([[0.1, -0.1, 0.0], [-0.1, 0.1, -2 * np.pi + 0.03], [0.2, 0.2, -0.02]]), true
-
-
 def flattering_row(found, true, mended=""):
     """The code of the task; mended: what no longer flatters in it, of "unable", "headings" and "means"."""
     difference = (found - true)[~np.isnan(found).any(axis=1)] if "unable" in mended else np.nan_to_num(found - true)
@@ -92,7 +79,11 @@ def flattering_row(found, true, mended=""):
 
 # fmt: off
 EXERCISES = [
-    Exercise("17.1", judge_poses, poses_of_every_kind, "warm-up", cases={"close calls": close_calls}, mistakes="""
+    Exercise("17.1", judge_poses, poses_of_every_kind, "warm-up", cases={
+        "close calls": lambda rng: (  # wrong *and* unable; all, one or most pairs wrong; one or both errors large
+            *np.array([[np.nan, np.nan, 0.1, 0.1, 0.1, 3, 3, 0.1, 2], [np.nan, np.nan, 0.1, 0.1, 0.1, 3, 0.1, 3, 2]]),
+            *np.array([[1, 0, 4, 9, 9, 9, 9, 9, 2], [1, 0, 4, 1, 6, 0, 1, 0, 0]])),
+    }, mistakes="""
         np.where(n_used <= 1, -1, is_correct) => np.where(n_wrong > 0, 0, np.where(n_used <= 1, -1, is_correct))
         One used pair, and wrong: that is unable all the same. Ask for unable before you ask for wrong pairs.
         (dx <= 2) & (dy <= 2) => ((dx <= 2) | (dy <= 2))
@@ -157,7 +148,9 @@ EXERCISES = [
         That is the probability that at least one is seen. At most one: add none and exactly one.
     """),
     Exercise("17.4", row_of_table, poses_with_errors, "challenge", cases={
-        "headings of half a turn": headings_of_half_a_turn,
+        "headings of half a turn": lambda rng: (  # found a little to the other side: off by 2 degrees, not by 358
+            np.array([[1.1, 0.9, np.pi], [1.9, 1.1, 0.03 - np.pi], [3.2, 4.2, -0.02]]),
+            np.array([[1.0, 1.0, np.pi], [2.0, 1.0, np.pi], [3.0, 4.0, 0.0]])),
     }, mistakes="""
         ... => return flattering_row(found, true)
         That is the code as it was given. What does it say of a robot that looks exactly backwards?
