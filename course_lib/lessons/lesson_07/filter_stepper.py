@@ -1,8 +1,8 @@
 """The filter of figure 1, one step at a time on a stretch of the corridor: its state and its pure steps.
 
-A state holds what earlier frames have left: the frame, the last step that was done, and the particles before this
-frame's noise. Everything that is shown follows from it and from the sliders: `look` propagates, weighs, estimates and
-resamples with fixed draws for a seed and a frame, so that a slider changes the present frame at once.
+A state holds what earlier frames have left: the frame, the last step, and the particles before this frame's noise.
+`look` computes all that is shown from it and the sliders, with fixed draws for a seed and a frame, so that a slider
+changes the present frame at once.
 """
 
 import functools
@@ -21,7 +21,6 @@ from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.sensor import subsample_depth
 
 FRAMES = range(60, 84)  # of the wagon's run, the stretch of lesson 08
-SMALL = (32, 26)  # pixels of the images: few, so that a hundred views take milliseconds
 MAX_PARTICLES = 100
 # Buttons in the order of figure 1, and after which steps each may be pressed.
 ALLOWED_AFTER = {
@@ -38,10 +37,9 @@ FollowedStretch = namedtuple("FollowedStretch", "errors ess spread")
 
 @functools.cache
 def corridor_stretch() -> Stretch:
-    """Depth images `(T, 26, 32)` [m], the camera's states `(T, 6)`, the walls at its height `(M, 2)`, a renderer."""
-    sequence, scene_map = wagon_run(), corridor_map()
-    camera = sequence.camera()
-    small = camera.resized(*SMALL)
+    """Return depth images `(T, 26, 32)` [m], the camera's states `(T, 6)`, the walls at its height `(M, 2)`, a renderer."""
+    sequence, scene_map, camera = wagon_run(), corridor_map(), wagon_run().camera()
+    small = camera.resized(32, 26)  # few pixels, so that a hundred views take milliseconds
     true = state_from_optical_pose(sequence.camera_to_world[list(FRAMES)])
     measured = np.stack([subsample_depth(sequence.depth(frame), camera, small) for frame in FRAMES])
     walls = floor_plan(scene_map.vertices, true[0, 2])
@@ -50,15 +48,15 @@ def corridor_stretch() -> Stretch:
 
 
 def start() -> StepperState:
-    """Eqs (3), (4): all particles at the true first pose; the next frame's noise and weights are done already."""
+    """Put all particles at the true first pose, eqs (3), (4); the next frame's noise and weights are done already."""
     return StepperState(1, "weigh", particle_filter.initial_particles(corridor_stretch().true[0], MAX_PARTICLES))
 
 
 def look(state: StepperState, alpha: float, beta: float, n_particles: int, noise: float, seed: int = 1) -> View:
-    """All steps of the present frame; noise: a factor on the system noise of 0.15 m, 0.04 m, 1.5 degrees.
+    """Do all steps of the present frame; noise: a factor on the system noise of 0.15 m, 0.04 m, 1.5 degrees.
 
-    The parents, as many as asked for (evenly thinned or copied), get this frame's noise: particles `(N, 6)`. score:
-    l / m of the best one. indices `(N,)`: which particles live on.
+    The parents, evenly thinned or copied to N, get this frame's noise: particles `(N, 6)`. score: l / m of the best.
+    indices `(N,)`: which particles live on.
     """
     stretch, parents = corridor_stretch(), state.parents[np.arange(n_particles) * len(state.parents) // n_particles]
     particles = propagate(parents, noise * np.array(SIGMA_XY_YAW), np.random.default_rng([seed, state.frame]))
@@ -71,7 +69,7 @@ def look(state: StepperState, alpha: float, beta: float, n_particles: int, noise
 
 
 def refusal(state: StepperState, name: str) -> str:
-    """Why the step `name` cannot come now, and "" if it can."""
+    """Return why the step `name` cannot come now, and "" if it can."""
     if state.done not in ALLOWED_AFTER[name]:
         return f"Not now: {name} comes after {' or '.join(ALLOWED_AFTER[name])}; the last step was {state.done}."
     if name == "propagate" and state.frame + 1 == len(FRAMES):
@@ -80,11 +78,7 @@ def refusal(state: StepperState, name: str) -> str:
 
 
 def step(state: StepperState, name: str, view: View) -> StepperState:
-    """The state after the button `name`.
-
-    propagate makes the present particles the parents of the next frame: those that were resampled, or all of them as
-    they are where resampling was left out.
-    """
+    """Return the state after the button `name`. The present particles, resampled or not, are the next parents."""
     if name != "propagate":
         return state._replace(done=name)
     parents = view.particles[view.indices] if state.done == "resample" else view.particles
@@ -92,7 +86,7 @@ def step(state: StepperState, name: str, view: View) -> StepperState:
 
 
 def follow(beta: float, resampled: bool = True) -> FollowedStretch:
-    """The steps over the whole stretch: errors on the floor `(T,)` [m], sample sizes `(T,)`, spread along x [m]."""
+    """Do the steps over the whole stretch: errors on the floor `(T,)` [m], sample sizes `(T,)`, spread along x [m]."""
     true, state, errors, ess = corridor_stretch().true, start(), [], []
     while True:
         view = look(state, 0.1, beta, 50, 1.0)

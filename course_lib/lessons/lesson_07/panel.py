@@ -22,7 +22,7 @@ CONTROLS = [
 
 
 def describe(state: stepper.StepperState, view: stepper.View, true: np.ndarray, message: str) -> str:
-    """The lines under the picture; what has not been computed yet is not told."""
+    """Return the lines under the picture, without what has not been computed yet."""
     following = " or ".join(name for name, after in stepper.ALLOWED_AFTER.items() if state.done in after)
     n, lines = len(view.particles), [message] if message else []
     lines.append(f"frame {state.frame} of {len(stepper.FRAMES) - 1}; last step: {state.done}; now: {following}")
@@ -40,7 +40,7 @@ def describe(state: stepper.StepperState, view: stepper.View, true: np.ndarray, 
 
 
 def stepper_panel() -> Panel:
-    """The panel; every panel has a state of its own, which its buttons move on."""
+    """Make the panel. Every panel has a state of its own, which its buttons move on."""
     stretch, state, message = stepper.corridor_stretch(), stepper.start(), ""
     figure, (plan, weight, bar) = figures.new_figure(1, 3, size=(10.0, 3.5))
     plan.get_gridspec().set_width_ratios([2.6, 1.5, 0.5])
@@ -62,8 +62,8 @@ def stepper_panel() -> Panel:
     bar.set(xlabel="dashed: N [-]", ylabel="effective sample size [particles]")
     live = LiveFigure(figure, [headings, cloud, truth, estimate, stems, size, full])
 
-    def present_view(alpha: float, beta: float, n_particles: float, noise: float, seed: float) -> stepper.View:
-        return stepper.look(state, alpha, beta, int(n_particles), noise, int(seed))
+    def present_view(n_particles: float, seed: float, **values: float) -> stepper.View:
+        return stepper.look(state, n_particles=int(n_particles), seed=int(seed), **values)
 
     def draw(**values: float) -> Drawing:
         view, true = present_view(**values), stretch.true[state.frame]
@@ -82,14 +82,12 @@ def stepper_panel() -> Panel:
         size.set(height=view.ess if weighed else n, alpha=1.0 if weighed else 0.35)
         full.set_height(n)
         summary = describe(state, view, true, message)
-        alt = (
-            f"The corridor from above with {n} particles, their weights, and the effective sample size as a bar, after "
-            f"the step {state.done}. {' '.join(summary.splitlines())}"
-        )
+        alt = f"""The corridor from above with {n} particles, their weights, and the effective sample size as a bar, after
+            the step {state.done}. {summary}"""
         return Drawing(live.png(), alt, summary)
 
     def press(name: str, values: dict, whole_round: bool = False) -> dict:
-        """Do a step, or finish the frame and go on to the next estimate; where none can come now, say so."""
+        """Do a step, or finish the frame and go on to the next estimate. Say so if none can come now."""
         nonlocal state, message
         message = stepper.refusal(state, name)
         if not message:
