@@ -16,6 +16,7 @@ def test_buttons_step_in_the_order_of_figure_1_and_a_step_that_cannot_come_is_to
         ("Propagate", "frame 2 of 23; last step: propagate"),
         *[("Whole round", f"frame {frame} of 23; last step: estimate") for frame in range(3, 24)],
         ("Whole round", "the stretch ends here"),
+        ("Reset", "frame 1 of 23; last step: weigh"),
     ):
         panel.press(button)
         assert shown in panel.draw(**panel.values()).summary

@@ -97,8 +97,6 @@ EXERCISES = [
         A pixel without a measurement stays NaN. A depth of 0 m would be a surface at the lens.
         ... => with np.errstate(all="ignore"): return ranges / np.linalg.norm(rays[..., :2], axis=-1)
         Your ray has no forward component. The length of (x, y, 1) is not the length of (x, y).
-        ... => with np.errstate(all="ignore"): return np.sqrt(ranges**2 - rays[..., 0] ** 2 - rays[..., 1] ** 2)
-        The x and y of a ray are no metres. They are per metre of depth: range = depth times the ray's length.
         np.linalg.norm(rays, axis=-1) => np.hypot(rays[..., 0], 1)
         Rays are tilted to the side *and* up and down. Both x and y count, and you use one of them.
     """),
@@ -118,8 +116,6 @@ EXERCISES = [
         You compare a range with a reading. What would the camera *read* at f_b for each candidate?
         np.arange(farthest // turn_a + 1) => np.arange(2)
         You try no turn or one turn. A surface can be farther away: how many turns fit below `farthest`?
-        miss = np.abs => miss =
-        The miss has a sign, and you take the most negative one. The best candidate has the *smallest* miss.
         ... => return range_from_two(read_b, f_b, read_a, f_a, farthest)
         You add turns to read_b. The two readings differ by the noise, and the task starts from read_a.
         2 * f_a => f_a and also 2 * f_b => f_b
@@ -139,8 +135,6 @@ EXERCISES = [
         You weigh the ranges by the light. The pixel adds *phasors*, and it reads the angle of their sum.
         * np.sin(k * (r - r1)) => and also * np.sin(k * (r2 - r)) =>
         Your share is the same whatever the pixel reads: where is r? It is the angle of the sum of both phasors.
-        k = 4 * np.pi * f / 299_792_458.0 => k = 1
-        You take the sine of metres. The angle between two phasors is 4 pi f / c times the difference in range.
         return wall => return pole
         That is the share on the farther surface.
         rho1 / => 1 / and also rho2 / => 1 /
@@ -167,8 +161,6 @@ EXERCISES = [
         Your mean is right. Your second value is the root of the mean square: subtract the mean first.
         return mean => return norm.ppf(1 - 0.5 ** (1 / n))
         That is the median of the least. Its distribution is lopsided, so the mean lies farther out.
-        return mean => return norm.ppf(1 / (n + 1))
-        The point with a share of 1 / (n + 1) below it is near the mean of the least, not equal to it.
         ** (n - 1) => ** n
         In the density of the least of n the power of 1 - Phi is n - 1. In yours it is n.
         density = n * => density =

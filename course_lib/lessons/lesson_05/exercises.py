@@ -118,8 +118,6 @@ EXERCISES = [
         Your noise grows with t. Each frame adds one variance, so the variance grows with t, not its square.
         ... => return spread0 + t * sigma
         In yours all steps point the same way. They are random: variances add, not standard deviations.
-        spread0**2 + t * sigma**2 => t * (spread0**2 + sigma**2)
-        You count the spread at the start in every frame. It is there once.
         t * sigma**2 => sigma**2
         That is the spread after one frame. Where is t?
         t * sigma**2 => max(t - 1, 0) * sigma**2
@@ -127,8 +125,6 @@ EXERCISES = [
         You count one frame too many or too few. After t frames there were t steps; the start is no step.
     """),
     Exercise("05.2", propagate_own_axes, particles_and_draws, cases={"four headings": four_headings}, mistakes="""
-        particles[:, 5] => particles[:, 3]
-        You turn the steps by the roll. The heading is the yaw, the last of the six.
         particles[:, 5] => 0 * particles[:, 5]
         You add forward to x and left to y. That holds for yaw 0 only: turn the step by the particle's yaw.
         particles[:, 5] => -particles[:, 5]
@@ -204,8 +200,6 @@ EXERCISES = [
         `a[index] += ...` counts an index that comes twice only once. Use np.add.at, or loop over cells.
         np.minimum(np.arange(len(bel)) + k, len(bel) - 1) => (c := np.arange(len(bel))) + k * (c + k < len(bel))
         In yours a wagon that would pass the end stays where it was. It rolls on and stops in the last cell.
-        + k, => + k + 1,
-        You roll one cell too far: moves[0] is the probability of staying.
     """),
     Exercise("05.5", min_sigma, lambda rng: (
         rng.uniform(0.02, 0.3), int(rng.integers(50, 2000)), int(rng.integers(20, 500)), rng.uniform(0.6, 0.99),
@@ -218,14 +212,10 @@ EXERCISES = [
         You ask that *all* particles stay below the step. One that reaches it is enough: 1 - Phi^n.
         (1 - one_frame) ** (1 / n) => 1 - one_frame ** (1 / n)
         You ask that *every* particle makes the step. One of the n is enough.
-        (1 - one_frame) ** (1 / n) => 1 - one_frame / n
-        Phi^n is no product with n: undo a power by a root.
         p ** (1 / frames) => p**frames
         You raise p to the power of the frames. p is the probability for all of them: undo that power.
         (1 - one_frame) ** (1 / n) => 1 - one_frame
         That is a sigma for one particle. Where is n? One minus q is Phi to the power of n.
-        p ** (1 => (1 - p) ** (1
-        You took p for the probability of failing.
         (1 - one_frame) ** (1 / n) => (1 + (1 - one_frame) ** (1 / n)) / 2
         A step backwards of the same size does not help. Only one side of the normal distribution counts.
         norm.ppf((1 - one_frame) ** (1 / n)) => np.sqrt(2 * np.log(n))

@@ -114,8 +114,6 @@ EXERCISES = [
         One fault is mended, two are left. Try a hole in the map, particles all alike, and a small beta.
         ... => return given_code(measured, images, alpha, beta)
         All three faults are still in. Try a hole, particles all alike, and a small beta.
-        / beta**2 => / (2 * beta**2)
-        Your exponent has the 2 of the usual Gaussian below the line. Equation (10) has none.
         np.exp(-((normalized - 1) ** 2) / beta**2) => normalized
         You leave (10) out. The normalized likelihood itself, divided by its sum, is not yet the weight.
         (l - l.min()) / (l.max() - l.min()) => l / l.max()
@@ -168,8 +166,6 @@ EXERCISES = [
         Your mean is right. Spread over root n holds for equal weights. Here some samples count for many.
         np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.sqrt(np.sum(w * (x - mean) ** 2) * np.sum(w**2))
         Your mean is right. Spread over root N_eff is near, but heavy samples lie together: derive it.
-        w = target / proposal => w = np.ones(len(x))
-        You do not weigh the samples. They belong to the proposal, and the task asks for the target's mean.
         target / proposal => target
         You weigh by the target alone. The samples are dense already where the proposal is: divide by it.
         w / w.sum() => w / len(x)

@@ -84,8 +84,6 @@ EXERCISES = [
         w * np => np
         w * np => 1 / len(w) * np
         You have not used the weights. In yours every particle counts the same.
-        np.arctan2(s, c), np.hypot(s, c) => c, s
-        That is the mean point itself, by its coordinates. The task asks for its direction and its length.
         np.hypot(s, c) => np.hypot(np.mean(np.sin(angles)), np.mean(np.cos(angles)))
         Your direction is right. Your R has no weights: it is the length of the same mean point.
         np.hypot(s, c) => np.hypot(s, c) / len(w)
@@ -129,8 +127,6 @@ EXERCISES = [
         You weigh the chances. A survivor counts 1, heavy or light: add up the chances alone.
         (1 - w) ** len(w) => w ** len(w)
         w to the power N is the chance to be drawn *every* time. You need the chance of never: 1 - w, to the N.
-        np.sum(1 - (1 - w) ** len(w)) => np.sum(len(w) * w * (1 - w) ** (len(w) - 1))
-        You count those that are drawn exactly once. A particle that is drawn more often lives on, too.
         (1 - w) ** len(w) => np.exp(-len(w) * w)
         Close: exp(-N w) is the limit for many particles. Here N is small: take the power itself.
         np.sum(1 - (1 - w) ** len(w)) => len(w) * (1 - (1 - 1 / len(w)) ** len(w))
@@ -150,8 +146,6 @@ EXERCISES = [
         That is residual resampling: certain copies, then independent draws. Here each part has one draw.
         ... => return spread(w, x) / len(w)
         You take the spread of all the x. Find the variance of each part's draw, add, then divide the root by N.
-        ... => return 0.0
-        It is not zero. In a part that two fields share, chance decides which of them is picked.
         ... => order = np.argsort(-w); return stratified_error(w[order], x[order])
         You sort the particles first. The fields lie on the strip in the order given, and it matters.
         p = n * => p =

@@ -51,7 +51,7 @@ def wagon_and_laser(seed: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def beside_kalman(n_particles: int, kalman_step, particle_step) -> BesideKalman:
-    """Return root mean square distances `(RUNS,)` [m] of both filters from each other and the truth, on the same data."""
+    """Return root mean square distances `(RUNS,)` [m] of both filters from each other and from the truth."""
     rows = []
     for seed in range(1, RUNS + 1):
         true, measured = wagon_and_laser(seed)
