@@ -112,11 +112,10 @@ def cloud_panel() -> Panel:
     """Move a cloud by system noise, with or without an oracle that keeps the nearest particle."""
     path, frames = wagon_states()[: MAX_FRAMES + 1], np.arange(MAX_FRAMES + 1)
     figure, (above, (spread_axes, distance_axes)) = figures.new_figure(2, 2, size=(9.8, 4.9))
-    grid = above[0].get_gridspec()
+    plan, grid = above[0], above[0].get_gridspec()
     grid.set_height_ratios([1.25, 1])
-    for unused in above:
-        unused.remove()
-    plan = figure.add_subplot(grid[0, :])
+    above[1].remove()
+    plan.set_subplotspec(grid[0, :])
     draw_plan(plan, (-0.5, 11.5), (-1.75, 1.75), "From above; paler clouds are earlier ones")
     plan.plot(*path[:, :2].T, color="black", linewidth=1.0, zorder=3, label="its path")
     shades = {"#C9DEEE": 2.5, "#9CC3E0": 2.5, "#6BA3CF": 2.5, figures.BLUE: 3.0}
@@ -155,13 +154,13 @@ def cloud_panel() -> Panel:
         for curve, values in zip(curves, shown, strict=True):
             curve.set_data(frames[: t + 1], values)
         near_share = (distances(own.clouds[t:], true[t:]) <= 0.10).mean()
-        lines = [
-            f"spread in x after {t} frames: {spread[-1]:.2f} m (sqrt(t) sigma: {sigma_x * np.sqrt(t):.2f} m)",
-            f"nearest particle {own.nearest[-1]:.3f} m from the wagon; within 0.10 m of it: {near_share:.0%}",
-        ]
+        summary = (
+            f"spread in x after {t} frames: {spread[-1]:.2f} m (sqrt(t) sigma: {sigma_x * np.sqrt(t):.2f} m)\n"
+            f"nearest particle {own.nearest[-1]:.3f} m from the wagon; within 0.10 m of it: {near_share:.0%}"
+        )
         alt = f"""Clouds of {int(n)} particles from above over {t} frames ({between}), sigma {sigma_x:.3f} m in x,
             {sigma_y:.2f} m in y, {sigma_yaw:.1f} degrees in yaw; their spread and their distance from the wagon."""
-        return Drawing(live.png(), alt, "\n".join(lines))
+        return Drawing(live.png(), alt, summary)
 
     return Panel("05 the cloud", CONTROLS, draw)
 

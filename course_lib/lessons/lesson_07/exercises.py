@@ -54,11 +54,6 @@ def stratified_error(w, x):
     return np.sqrt(variance) / n
 
 
-def weights_and_values(rng: np.random.Generator) -> tuple:
-    (w,) = uneven_weights(rng)
-    return w, rng.normal(rng.uniform(-3, 3), 1.0, len(w))
-
-
 def spread(w, x):
     """Return the standard deviation of x in one draw with probabilities w."""
     return np.sqrt(w @ (x - w @ x) ** 2)
@@ -134,7 +129,9 @@ EXERCISES = [
         np.sum(1 - (1 - w) ** len(w)) => 1 / np.sum(w**2)
         That is the effective sample size. It says how uneven the weights are, not how many are drawn.
     """),
-    Exercise("07.4", stratified_error, weights_and_values, "challenge", cases={
+    Exercise("07.4", stratified_error, lambda rng: (
+        w := uneven_weights(rng)[0], rng.normal(rng.uniform(-3, 3), 1.0, len(w)),
+    ), "challenge", cases={
         "three particles": lambda rng: (np.array([0.5, 0.3, 0.2]), rng.permutation(np.arange(3.0))),
         "light ones last": lambda rng: (np.array([0.22] * 2 + [0.07] * 8), rng.normal(size=10)),
     }, mistakes="""
