@@ -1,5 +1,7 @@
 """Right answers to lesson 05 by other ways than its solutions."""
 
+from functools import partial
+
 import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import norm
@@ -22,15 +24,11 @@ def near(p, s, r):
     return ((p[..., :2] - s[:2]) ** 2).sum(axis=-1) <= r**2
 
 
-def step_by_step(moved):
-    """05.4: `moved(bel, moves)` is the prediction; then the sensor."""
-
-    def answer(bel, moves, doors, seen, hit, false_alarm):
-        chance = [hit if door else false_alarm for door in doors]
-        after = np.array([m * (c if seen else 1 - c) for m, c in zip(moved(bel, moves), chance, strict=True)])
-        return after / after.sum()
-
-    return answer
+def bayes_by(moved, bel, moves, doors, seen, hit, false_alarm):
+    """`moved(bel, moves)` is the prediction; then the sensor."""
+    chance = [hit if door else false_alarm for door in doors]
+    after = [m * (c if seen else 1 - c) for m, c in zip(moved(bel, moves), chance, strict=True)]
+    return [one / sum(after) for one in after]
 
 
 def cell_by_cell(bel, moves):
@@ -41,8 +39,8 @@ def cell_by_cell(bel, moves):
 
 
 def by_matrix(bel, moves):
-    rows = np.eye(len(bel))
-    return sum(p * rows[np.minimum(np.arange(len(bel)) + k, len(bel) - 1)] for k, p in enumerate(moves)).T @ bel
+    ends = [np.minimum(np.arange(len(bel)) + k, len(bel) - 1) for k in range(len(moves))]
+    return bel @ sum(p * np.eye(len(bel))[end] for p, end in zip(moves, ends, strict=True))
 
 
 def convolved(bel, moves):
@@ -57,8 +55,8 @@ RIGHT = [
     ("05.2", by_matrices),
     ("05.3", lambda p, s, r, a: np.count_nonzero(near(p, s, r) & (np.cos(p[:, 5] - s[5]) >= np.cos(a))) / len(p)),
     ("05.3", lambda p, s, r, a: [np.mean([near(q, s, r) and abs(wrap_angle(q[5] - s[5])) <= a for q in p])]),
-    *[("05.4", step_by_step(moved)) for moved in (cell_by_cell, by_matrix, convolved)],
-    ("05.4", lambda *given: step_by_step(convolved)(*given).tolist()),
+    *[("05.4", partial(bayes_by, moved)) for moved in (cell_by_cell, by_matrix, convolved)],
+    ("05.4", lambda *given: np.array(bayes_by(convolved, *given))),
     ("05.5", lambda s, n, frames, p: s / norm.isf(1 - (1 - p ** (1 / frames)) ** (1 / n))),
     ("05.5", lambda s, n, frames, p: brentq(lambda sigma: (1 - norm.cdf(s / sigma) ** n) ** frames - p, s / 9, 9 * s)),
 ]
