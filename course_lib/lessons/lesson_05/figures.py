@@ -112,10 +112,11 @@ def cloud_panel() -> Panel:
     """Move a cloud by system noise, with or without an oracle that keeps the nearest particle."""
     path, frames = wagon_states()[: MAX_FRAMES + 1], np.arange(MAX_FRAMES + 1)
     figure, (above, (spread_axes, distance_axes)) = figures.new_figure(2, 2, size=(9.8, 4.9))
-    plan, grid = above[0], above[0].get_gridspec()
+    grid = above[0].get_gridspec()
     grid.set_height_ratios([1.25, 1])
-    above[1].remove()
-    plan.set_subplotspec(grid[0, :])
+    for unused in above:
+        unused.remove()
+    plan = figure.add_subplot(grid[0, :])
     draw_plan(plan, (-0.5, 11.5), (-1.75, 1.75), "From above; paler clouds are earlier ones")
     plan.plot(*path[:, :2].T, color="black", linewidth=1.0, zorder=3, label="its path")
     shades = {"#C9DEEE": 2.5, "#9CC3E0": 2.5, "#6BA3CF": 2.5, figures.BLUE: 3.0}
