@@ -115,6 +115,7 @@ EXERCISES = [
         np.abs(measured - simulated) => np.abs(measured - simulated).mean()
         That is one number for the whole image. Here every pixel keeps its own.
         np.abs(measured - simulated) => np.nan_to_num(np.abs(measured - simulated))
+        np.abs(measured - simulated) => np.where(np.isnan(measured), 0.0, np.abs(measured - simulated))
         Where the camera measured nothing (nan) yours gives a number, as if it were known. Leave nan and inf alone.
         np.abs(measured - simulated) => np.minimum(np.abs(measured - simulated), 10.0)
         Yours stops at 10 m. Nothing in the task caps a difference, and through an open door it is larger.
@@ -143,6 +144,8 @@ EXERCISES = [
         A vote of 0 gives neither nan nor 0, because only an infinite difference earns nothing.
         alpha / vote - alpha => 1 / vote - alpha
         You have 1 where alpha belongs: vote times (alpha + d) is alpha, not 1.
+        alpha / vote - alpha => alpha / vote - 1
+        You take a pure number away from metres. Solve v (alpha + d) = alpha again and look at the unit of each term.
     """),
     Exercise("00.3", find_the_camera, a_search, "challenge", verify=off_the_top, cases={
         "a far start": lambda rng: a_search(rng, rng.choice([-1, 1], 3)),

@@ -142,6 +142,7 @@ EXERCISES = [
         ... => return nearest_surface(layers.min(axis=0)[None], near, far)
         In yours a surface before the near plane hides the ones behind it. Drop it first, then take the least.
         ... => return np.clip(layers, near, far).min(axis=0)
+        ... => return np.where(np.isinf(layers), np.inf, np.clip(layers, near, far)).min(axis=0)
         You move a surface outside near and far onto a plane (np.clip does that), but it is not seen at all.
         ... => return layers.min(axis=0)
         & (layers <= far) =>

@@ -145,6 +145,10 @@ EXERCISES = [
         If the filter is never lost, you give the number of frames. The task asks for -1.
         ... => return -1
         You always give -1. Does the -1 stand inside the loop? It belongs after it.
+        return -1 => return patience - 1
+        return -1 => return patience - 1 if len(scores) >= patience else -1
+        return -1 => return 0
+        If no row is complete, you still name an early frame. argmax gives 0 when it finds nothing: test for that first.
     """),
     Exercise("08.4", effective_frames, length_and_likeness, "challenge", cases={
         "independent frames": lambda rng: length_and_likeness(rng, 0, 0),

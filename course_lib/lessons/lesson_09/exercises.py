@@ -202,5 +202,7 @@ EXERCISES = [
         Your points are shifted, never turned: the third column of J is n . (dR/dtheta p).
         [[-s, -c], [c, -s]] => [[0, -1], [1, 0]]
         Your dR/dtheta is the one at theta = 0. Take it at the theta of each step.
+        w = 1 / (1 + (r / scale) ** 2) ** 2 => w = w if _ else 1 / (1 + (r / scale) ** 2) ** 2
+        You weigh the points once, at the start. Their residuals change with every step, so weigh them anew each time.
     """),
 ]

@@ -116,6 +116,8 @@ EXERCISES = [
         If you round, the first and the last free cell get half their share. Cut the decimals off instead.
         rows, columns = np.nonzero(free) => columns, rows = np.nonzero(free.T)
         You count the free cells column by column. The task counts them row by row, as np.nonzero does.
+        (u[:, 0] * len(rows)).astype(int) => (u[:, 0] * (len(rows) - 1)).astype(int)
+        You never choose the last free cell. The numbers in u stay below 1, so there is no need to take one cell away.
     """),
     Exercise("10.2", new_shares, falling_scores, cases={
         "the example of the task": lambda rng: (np.array([0.8, 0.8, np.nan, 0.4]), 0.5, 0.1),
@@ -123,6 +125,7 @@ EXERCISES = [
         max(0, 1 - s / L) => 1 - s / L
         If the short mean is the greater one, all is well. Then the share is 0; it is never negative.
         return np.array(shares) => return np.where(np.isnan(scores), np.nan, shares)
+        return np.array(shares) => return np.where(np.isnan(scores), 0.0, shares)
         In a dark frame the means stay as they are, and so does the share: not NaN, and not 0.
         ... => return new_shares(scores, long, short)
         Upside down: the short mean, which follows quickly, goes above the fraction line, the long one below.

@@ -213,6 +213,10 @@ EXERCISES = [
         You put nothing out, you only sort. Of several boxes on one thing, the surest alone stays.
         best[i] >= threshold and =>
         You use no threshold: rows with less than that never count.
+        np.clip(sides, 0, None).prod(axis=1) => sides.prod(axis=1)
+        Boxes apart in both directions have two negative sides, and their product is positive. Such boxes share nothing.
+        - boxes[:, :2]).prod => - boxes[:, :2] + 1).prod and also boxes[kept, :2]) => boxes[kept, :2]) + 1
+        A box from 0 to 10 is 10 pixels wide here. You count 11: its ends are edges, not pixel numbers.
     """),
     Exercise("12.4", lowest_threshold, validation_boxes, "challenge", verify=refused, cases={
         "four right boxes": lambda rng: (FOUR_SCORES, np.ones(4, bool), 0.5),

@@ -152,6 +152,10 @@ EXERCISES = [
         The angles' error grows with the square of the range.
         rho**2 / baseline => rho**2 / baseline**2
         The baseline counts once: twice the baseline, half the error.
+        np.sqrt(by_upper**2 + by_lower**2 + by_baseline**2) => np.sqrt(by_upper**2 + by_lower**2) + by_baseline
+        The baseline's error is independent of the others, too: its part adds as a square, under the root.
+        rho / baseline * sigma_baseline => rho**2 / baseline * sigma_baseline
+        The baseline's part is too large by a factor of rho. Differentiate rho = B / s by B, with the slope s fixed.
     """),
     Exercise("14.3", range_from_matches, matches, verify=refused_range, cases={
         "one match far off": lambda rng: matches(rng, 5, 1, parallax=(0.5, 0.6)),

@@ -108,6 +108,7 @@ EXERCISES = [
         You turn grey into hue 0, which is red. Subtract first, then put 0 where the difference is NaN.
         np.minimum(apart, 360 - apart) => ((hue_seen - hue_map + 180) % 360 - 180)
         np.minimum(apart, 360 - apart) => (hue_seen - hue_map)
+        np.minimum(apart, 360 - apart) => ((hue_map - hue_seen + 180) % 360 - 180)
         Your difference has a sign. A hue that is off to the other side must cost as much.
         np.minimum(apart, 360 - apart) => ((hue_seen - hue_map) % 360)
         The remainder by 360 goes one way around only: 10 and 350 become 20, but 350 and 10 become 340.

@@ -240,6 +240,8 @@ EXERCISES = [
         The heading is right. The place is the target's centroid minus the source's, turned by theta.
         return x, y, theta => return x, y, theta % (2 * np.pi)
         The pose is right, but give theta from -pi to pi, as np.arctan2 does.
+        weights @ (a[:, 0] => weights**2 @ (a[:, 0] and also weights @ np.sum => weights**2 @ np.sum
+        Each pair's weight enters the sums squared: you multiply both sides by it. It belongs to the product once.
     """),
     Exercise("16.5", pose_sigmas, needles, "challenge", cases={
         "round errors": lambda rng: (rng.uniform(-2, 6, (5, 2)), rng.uniform(-3, 3), np.tile(np.eye(2), (5, 1, 1))),

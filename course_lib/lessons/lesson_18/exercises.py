@@ -160,6 +160,8 @@ EXERCISES = [
         The 2 below each fraction line is missing.
         hue + ((saturation_seen - saturation_map) / 15) ** 2 / 2 => hue
         A term is missing: add the hue's and the saturation's own term.
+        np.abs(hue_seen - hue_map) => (hue_map - hue_seen) % 360 and also np.minimum(apart, 360 - apart) => apart
+        You always go the same way around the circle, up to 360 degrees. The shorter way is never longer than 180.
     """),
     Exercise("18.2", pose_of_two, two_matches, mistakes="""
         np.arctan2(dv, du) - np.arctan2(dy, dx) => np.arctan2(dy, dx) - np.arctan2(dv, du)

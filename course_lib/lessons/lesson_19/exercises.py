@@ -86,6 +86,8 @@ EXERCISES = [
         The place is right. Bring the heading back to the range from -pi to pi (`wrap_angle`).
         ... => return camera_on_map(x, y, theta, -forward, -left, turned)
         You subtract the offset: that leads from the camera to the robot. Here it goes the other way.
+        (theta + turned + np.pi) % (2 * np.pi) - np.pi => theta + turned - 2 * np.pi * (theta + turned > np.pi)
+        Your heading stays below -pi in some cases. The sum of two angles can leave the range at either end.
     """),
     Exercise("19.2", start_knowledge, tolerance=1e-9, inputs=lambda rng: (
         semantic_covariance(rng), float(rng.uniform(0.003, 0.03)), float(rng.uniform(0.2, 2.0)),

@@ -91,6 +91,8 @@ EXERCISES = [
         Yours are whole metres: `//` throws the rest away. Use `/`.
         np.nan => 0.0
         A hole is NaN: 0 would be a surface at the lens, and inf is a simulated ray that hit nothing.
+        raw == invalid => (raw == invalid) | (raw == 0)
+        You make a hole of every 0. Only `invalid` marks a hole: with invalid = 65535, a 0 is a depth of 0 m.
     """),
     Exercise("20.2", resized_intrinsics, lambda rng: (some_k(rng), rng.choice([0.125, 0.25, 0.5, 2.0])), cases={
         "size unchanged": lambda rng: (some_k(rng), 1.0),

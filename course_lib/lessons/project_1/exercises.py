@@ -158,6 +158,8 @@ EXERCISES = [
         sigma is missing: the noise is standard normal, one metre and one radian wide.
         sigma * noise => sigma * noise * [1, 1, 0, 0, 0, 1]
         Up, roll and pitch have noise, too: sigma holds six numbers. In the wagon three of them are 0.
+        moved = particles + step => moved = particles + step * [1, 1, 1, 0, 0, 0]
+        Only the place moves in yours. Roll, pitch and yaw get their noise, too.
     """),
     Exercise("P1.3", likelihood, images, cases={
         "nothing measured": lambda rng: (np.full((2, 3), np.nan), rng.uniform(1, 9, (4, 2, 3)), 0.1),
