@@ -6,19 +6,23 @@ gets another page, `scenes/yours/NAME.html`, which git ignores.
 
 from __future__ import annotations
 
+import base64
 import html
+import io
+import json
 import os
 import re
+import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 from IPython.display import display
 from PIL import Image
 
 from course_lib.files import atomic_write
 from course_lib.lessons.kit.compression import compress
 from course_lib.lessons.kit.display import Picture
-from course_lib.lessons.kit.same_scene import same_scene
 from course_lib.paths import STORE_SCENES
 from course_lib.plots.scene_page import ScenePageError, page_html
 from course_lib.plots.scenes import SceneError
@@ -26,45 +30,39 @@ from course_lib.plots.scenes import SceneError
 if TYPE_CHECKING:
     import pyvista
 
-HEIGHT = 500  # pixels of the frame
 MAX_PICTURE_BYTES = 60_000
-_WIDTHS = (800, 640, 480, 320)  # of the picture; the first that is small enough in bytes is used
+ROUNDING = 1e-3  # another processor may round numbers, such as coordinates [m], by so much
+_DATA = re.compile(r'base64Str = "([A-Za-z0-9+/=]+)"')
+_WORDS = re.compile(r'<title>.*?</title>|<meta name="description".*?/>', re.DOTALL)
 
 
 class Scene:
-    """A page in a frame, and below it a folded picture of the same scene.
+    """A page in a frame, and below it a folded picture of the same scene. If there is no page, only the picture.
 
-    source: path of the page, relative to the notebook's folder. height: of the frame [pixels].
+    source: path of the page, relative to the notebook's folder. height: of the frame [pixels]. no_page: why there is
+    no page.
     """
 
-    def __init__(self, source: str, title: str, height: int = HEIGHT, picture: Picture | None = None) -> None:
-        self.source, self.title, self.height, self.picture = source, title, height, picture
+    def __init__(
+        self, source: str, title: str, height: int = 500, picture: Picture | None = None, no_page: str = ""
+    ) -> None:
+        self.source, self.title, self.height, self.picture, self.no_page = source, title, height, picture, no_page
 
     def html(self) -> str:
+        if self.no_page:
+            return f"{self.picture.html()}<p>This scene cannot be turned here: {html.escape(self.no_page)}</p>"
         frame = (
             f'<iframe src="{self.source}" title="{html.escape(self.title)}" width="100%" height="{self.height}"'
             ' style="border: 0"></iframe>'
         )
-        if self.picture is None:
-            return frame
-        return f"{frame}<details><summary>The same as a picture</summary>{self.picture.html()}</details>"
+        folded = "<details><summary>The same as a picture</summary>{}</details>"
+        return frame + (folded.format(self.picture.html()) if self.picture else "")
 
     def _repr_mimebundle_(self, include=None, exclude=None) -> dict:
         return {"text/plain": repr(self), "text/html": self.html()}
 
     def __repr__(self) -> str:
         return f"Scene: {self.title}"
-
-
-class PictureOfAScene(Scene):
-    """The picture of a scene whose page cannot be written, with the reason."""
-
-    def __init__(self, title: str, picture: Picture, reason: str) -> None:
-        super().__init__("", title, picture=picture)
-        self.reason = reason
-
-    def html(self) -> str:
-        return f"{self.picture.html()}<p>This scene cannot be turned here: {html.escape(self.reason)}</p>"
 
 
 def show_scene(plotter: pyvista.Plotter, name: str, title: str, alt: str) -> None:
@@ -80,7 +78,7 @@ def show_scene(plotter: pyvista.Plotter, name: str, title: str, alt: str) -> Non
         picture = Picture(small_picture(plotter), alt)
         display(Scene(_page_path(page_html(plotter, title, alt), name), title, picture=picture))
     except (ScenePageError, OSError) as reason:
-        display(PictureOfAScene(title, picture, str(reason)))
+        display(Scene("", title, picture=picture, no_page=str(reason)))
     finally:
         plotter.close()
 
@@ -90,25 +88,56 @@ def small_picture(plotter: pyvista.Plotter) -> bytes:
     if not plotter.actors:
         raise SceneError("the scene is empty: add something with plotter.add_mesh(...)")
     picture = Image.fromarray(plotter.screenshot(return_img=True))
-    for width in _WIDTHS:
-        size = (width, round(width * picture.height / picture.width))
-        png = compress(picture.resize(size, Image.Resampling.LANCZOS))
+    for width in (800, 640, 480, 320):
+        height = round(width * picture.height / picture.width)
+        png = compress(picture.resize((width, height), Image.Resampling.LANCZOS))
         if len(png) <= MAX_PICTURE_BYTES:
             return png
-    raise SceneError(f"the scene's picture has {len(png)} bytes at {size[0]} pixels; at most {MAX_PICTURE_BYTES} fit")
+    raise SceneError(f"the scene's picture has {len(png)} bytes at {width} pixels; at most {MAX_PICTURE_BYTES} fit")
 
 
 def _page_path(page: str, name: str) -> str:
     """Return the page's path, relative to the notebook's folder. Write the page if it is new or has changed."""
-    stored = Path("scenes") / f"{name}.html"
-    if os.environ.get(STORE_SCENES):
-        return _write(stored, page)
-    if stored.is_file() and same_scene(page, stored.read_text(encoding="utf-8")):
-        return stored.as_posix()
-    return _write(stored.parent / "yours" / stored.name, page)
-
-
-def _write(path: Path, page: str) -> str:
+    path = Path("scenes") / f"{name}.html"
+    if not os.environ.get(STORE_SCENES):
+        if path.is_file() and same_scene(page, path.read_text(encoding="utf-8")):
+            return path.as_posix()
+        path = path.parent / "yours" / path.name
     path.parent.mkdir(parents=True, exist_ok=True)
     atomic_write(path, page)
     return path.as_posix()
+
+
+def same_scene(page: str, other: str) -> bool:
+    """Return whether two pages show the same title, words and objects, up to rounding. Their viewers may differ."""
+    try:
+        return _WORDS.findall(page) == _WORDS.findall(other) and _agree(_contents(page), _contents(other))
+    except (ValueError, KeyError, TypeError, zipfile.BadZipFile):  # not one of our pages, or a damaged one
+        return False
+
+
+def _contents(page: str) -> list:
+    """Return a page's scene and its arrays in their order, because their names depend on the last digit."""
+    found = _DATA.search(page)
+    with zipfile.ZipFile(io.BytesIO(base64.b64decode(found[1] if found else ""))) as archive:
+        index = json.loads(archive.read("index.json"))
+    text = json.dumps(index["scene"])
+    for number, name in enumerate(index["hashes"]):
+        text = text.replace(name, f"array {number}")
+    arrays = [
+        np.frombuffer(base64.b64decode(kept["content"]), np.dtype(kept["type"].removesuffix("Array").lower()))
+        for kept in index["hashes"].values()
+    ]
+    return [json.loads(text), arrays]
+
+
+def _agree(a: object, b: object) -> bool:
+    """Return whether two pieces of a scene are the same up to rounding."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        # The window's own class is the operating system's.
+        return a.keys() == b.keys() and all(_agree(a[k], b[k]) for k in a if not str(a[k]).endswith("RenderWindow"))
+    if isinstance(a, list) and isinstance(b, list):
+        return len(a) == len(b) and all(map(_agree, a, b))
+    if isinstance(a, np.ndarray | float) and isinstance(b, np.ndarray | float):
+        return np.shape(a) == np.shape(b) and np.allclose(a, b, rtol=ROUNDING, atol=ROUNDING, equal_nan=True)
+    return a == b

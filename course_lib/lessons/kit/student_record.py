@@ -36,11 +36,12 @@ def read_record(lesson: str) -> dict:
         found = json.loads(path.read_text(encoding="utf-8"))
         predictions, checks = found["predictions"], found["checks"]
         texts = [*predictions.values(), *(entry["status"] for entry in checks.values())]
-        counts = [entry["attempts"] for entry in checks.values()]
+        if not all(isinstance(text, str) for text in texts):
+            raise TypeError("a text is missing")
+        if not all(isinstance(entry["attempts"], int) for entry in checks.values()):
+            raise TypeError("a count is missing")
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise RecordError(f"{path} is not a valid record of lesson {lesson} ({error!r}): move it away") from error
-    if not all(isinstance(text, str) for text in texts) or not all(isinstance(count, int) for count in counts):
-        raise RecordError(f"{path} is not a valid record of lesson {lesson}: move it away")
     if found.get("lesson", lesson) != lesson:
         raise RecordError(f"{path} is the record of lesson {found['lesson']}, not of {lesson}: move it away")
     return {"predictions": predictions, "checks": checks}
@@ -62,9 +63,9 @@ def record_check(number: str, status: str) -> str:
     lesson = number.partition(".")[0]
     record, said = _record_to_change(lesson)
     entry = record["checks"].setdefault(number, {"status": status, "attempts": 0})
-    entry["attempts"] += status != "not attempted"
-    if entry["status"] != "right" and status != "not attempted":
-        entry["status"] = status
+    if status != "not attempted":
+        entry["attempts"] += 1
+        entry["status"] = "right" if entry["status"] == "right" else status
     _write(lesson, record)
     return said
 
@@ -83,9 +84,7 @@ def _record_to_change(lesson: str) -> tuple[dict, str]:
 
 
 def _write(lesson: str, record: dict) -> None:
-    folder = record_folder()
-    if folder is None:
-        return
-    folder.mkdir(parents=True, exist_ok=True)
-    text = json.dumps({"lesson": lesson, **record}, indent=1, ensure_ascii=False) + "\n"
-    atomic_write(folder / f"{lesson}.json", text)
+    if (folder := record_folder()) is not None:
+        folder.mkdir(parents=True, exist_ok=True)
+        text = json.dumps({"lesson": lesson, **record}, indent=1, ensure_ascii=False) + "\n"
+        atomic_write(folder / f"{lesson}.json", text)
