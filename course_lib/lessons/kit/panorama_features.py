@@ -14,7 +14,7 @@ from course_lib.spherical_stereo.panorama import StereoRig, View, open_view
 
 
 class Side(NamedTuple):
-    """One panorama: its picture `(H, W, 3)` uint8 BGR, its objects with exact boxes, their rows in the map, its features."""
+    """One panorama `(H, W, 3)` uint8 BGR, its objects with exact boxes, their rows in the map, and its features."""
 
     image: np.ndarray
     objects: list[Detection]
