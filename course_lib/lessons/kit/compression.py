@@ -24,6 +24,16 @@ def compress(rgb: np.ndarray) -> bytes:
     return _encoded(picture.quantize(128, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE), "PNG", optimize=True)
 
 
+def small_png(picture: Image.Image, width: int, max_bytes: int) -> bytes:
+    """Return a picture as PNG, `width` pixels wide or, if it has too many bytes, smaller. Raises `ValueError`."""
+    for wide in (width, width * 4 // 5, width * 3 // 5, width * 2 // 5):
+        size = (wide, round(wide * picture.height / picture.width))
+        png = compress(picture.resize(size, Image.Resampling.LANCZOS))
+        if len(png) <= max_bytes:
+            return png
+    raise ValueError(f"{len(png)} bytes at {wide} pixels; at most {max_bytes} fit")
+
+
 def compress_photograph(rgb: np.ndarray) -> bytes:
     """Return a picture as WebP. With this quality, the lines and letters of a figure stay clean."""
     return _encoded(Image.fromarray(np.ascontiguousarray(rgb)), "WEBP", quality=85)

@@ -1,27 +1,23 @@
 """Show a 3D scene as a page that the reader can turn, and as a picture for browsers without scripts.
 
-The lesson's own page is `notebooks/scenes/NAME.html`. Only `tools.refresh` writes it. A student who changes the cell
-gets another page, `scenes/yours/NAME.html`, which git ignores.
+The lesson's own page is `notebooks/scenes/NAME.html`. Only `tools.refresh` writes it. A student who changes the cell,
+or whose processor rounds otherwise, gets another page, `scenes/yours/NAME.html`, which git ignores.
 """
 
 from __future__ import annotations
 
-import base64
 import html
-import io
-import json
 import os
 import re
-import zipfile
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
 from IPython.display import display
 from PIL import Image
 
 from course_lib.files import atomic_write
-from course_lib.lessons.kit.compression import compress
+from course_lib.lessons.kit.compression import small_png
 from course_lib.lessons.kit.display import Picture
 from course_lib.paths import STORE_SCENES
 from course_lib.plots.scene_page import ScenePageError, page_html
@@ -31,11 +27,9 @@ if TYPE_CHECKING:
     import pyvista
 
 MAX_PICTURE_BYTES = 60_000
-ROUNDING = 1e-3  # another processor may round numbers, such as coordinates [m], by so much
-_DATA = re.compile(r'base64Str = "([A-Za-z0-9+/=]+)"')
-_WORDS = re.compile(r'<title>.*?</title>|<meta name="description".*?/>', re.DOTALL)
 
 
+@dataclass(frozen=True)
 class Scene:
     """A page in a frame, and below it a folded picture of the same scene. If there is no page, only the picture.
 
@@ -43,10 +37,11 @@ class Scene:
     no page.
     """
 
-    def __init__(
-        self, source: str, title: str, height: int = 500, picture: Picture | None = None, no_page: str = ""
-    ) -> None:
-        self.source, self.title, self.height, self.picture, self.no_page = source, title, height, picture, no_page
+    source: str
+    title: str
+    height: int = 500
+    picture: Picture | None = None
+    no_page: str = ""
 
     def html(self) -> str:
         if self.no_page:
@@ -87,57 +82,19 @@ def small_picture(plotter: pyvista.Plotter) -> bytes:
     """Return the scene's first view as a PNG of at most 60 kB. Raises `SceneError` if it is empty or too large."""
     if not plotter.actors:
         raise SceneError("the scene is empty: add something with plotter.add_mesh(...)")
-    picture = Image.fromarray(plotter.screenshot(return_img=True))
-    for width in (800, 640, 480, 320):
-        height = round(width * picture.height / picture.width)
-        png = compress(picture.resize((width, height), Image.Resampling.LANCZOS))
-        if len(png) <= MAX_PICTURE_BYTES:
-            return png
-    raise SceneError(f"the scene's picture has {len(png)} bytes at {width} pixels; at most {MAX_PICTURE_BYTES} fit")
+    try:
+        return small_png(Image.fromarray(plotter.screenshot(return_img=True)), 800, MAX_PICTURE_BYTES)
+    except ValueError as error:
+        raise SceneError(f"the scene's picture stays too large: {error}") from error
 
 
 def _page_path(page: str, name: str) -> str:
     """Return the page's path, relative to the notebook's folder. Write the page if it is new or has changed."""
     path = Path("scenes") / f"{name}.html"
     if not os.environ.get(STORE_SCENES):
-        if path.is_file() and same_scene(page, path.read_text(encoding="utf-8")):
+        if path.is_file() and path.read_text(encoding="utf-8") == page:
             return path.as_posix()
         path = path.parent / "yours" / path.name
     path.parent.mkdir(parents=True, exist_ok=True)
     atomic_write(path, page)
     return path.as_posix()
-
-
-def same_scene(page: str, other: str) -> bool:
-    """Return whether two pages show the same title, words and objects, up to rounding. Their viewers may differ."""
-    try:
-        return _WORDS.findall(page) == _WORDS.findall(other) and _agree(_contents(page), _contents(other))
-    except (ValueError, KeyError, TypeError, zipfile.BadZipFile):  # not one of our pages, or a damaged one
-        return False
-
-
-def _contents(page: str) -> list:
-    """Return a page's scene and its arrays in their order, because their names depend on the last digit."""
-    found = _DATA.search(page)
-    with zipfile.ZipFile(io.BytesIO(base64.b64decode(found[1] if found else ""))) as archive:
-        index = json.loads(archive.read("index.json"))
-    text = json.dumps(index["scene"])
-    for number, name in enumerate(index["hashes"]):
-        text = text.replace(name, f"array {number}")
-    arrays = [
-        np.frombuffer(base64.b64decode(kept["content"]), np.dtype(kept["type"].removesuffix("Array").lower()))
-        for kept in index["hashes"].values()
-    ]
-    return [json.loads(text), arrays]
-
-
-def _agree(a: object, b: object) -> bool:
-    """Return whether two pieces of a scene are the same up to rounding."""
-    if isinstance(a, dict) and isinstance(b, dict):
-        # The window's own class is the operating system's.
-        return a.keys() == b.keys() and all(_agree(a[k], b[k]) for k in a if not str(a[k]).endswith("RenderWindow"))
-    if isinstance(a, list) and isinstance(b, list):
-        return len(a) == len(b) and all(map(_agree, a, b))
-    if isinstance(a, np.ndarray | float) and isinstance(b, np.ndarray | float):
-        return np.shape(a) == np.shape(b) and np.allclose(a, b, rtol=ROUNDING, atol=ROUNDING, equal_nan=True)
-    return a == b

@@ -14,6 +14,7 @@ from pathlib import Path
 from PIL import Image
 
 from course_lib.files import atomic_write
+from course_lib.lessons.kit.compression import small_png
 from course_lib.paths import REPOSITORY, notebook_paths
 
 # Lesson -> the cell whose picture we use. Of a lesson that is not listed, we use the first picture.
@@ -26,39 +27,24 @@ MAX_SIZE = (420, 230)  # (width, height) in pixels
 MAX_BYTES = 30_000
 
 
-class SeriesPictureError(ValueError):
-    """A lesson without a stored picture, or with a picture that stays too large."""
-
-
 def stored_picture(path: Path, cell_id: str | None) -> Image.Image:
-    """Return the stored picture (RGB) of a cell, or a notebook's first picture. Raises `SeriesPictureError`."""
+    """Return the stored picture (RGB) of a cell, or a notebook's first picture. Raises `ValueError`."""
     for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
         for output in cell.get("outputs", []) if cell_id in (None, cell["id"]) else ():
             text = "".join(output.get("data", {}).get("text/html", ""))
             if found := re.search(r'src="data:image/[a-z]+;base64,([^"]+)"', text):
                 return Image.open(io.BytesIO(base64.b64decode(found[1]))).convert("RGB")
-    where = f"no cell {cell_id or ''}".rstrip()
-    raise SeriesPictureError(f"{path.name}: {where} has a stored picture; refresh the lesson, or choose another cell")
-
-
-def small_png(picture: Image.Image) -> bytes:
-    """Return a PNG within `MAX_SIZE` and `MAX_BYTES`. Raises `SeriesPictureError` if that is impossible."""
-    picture.thumbnail(MAX_SIZE, Image.Resampling.LANCZOS)
-    for colours in (128, 64, 32, 16):  # in the palette
-        buffer = io.BytesIO()
-        reduced = picture.quantize(colours, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-        reduced.save(buffer, format="PNG", optimize=True)
-        if buffer.tell() <= MAX_BYTES:
-            return buffer.getvalue()
-    raise SeriesPictureError(f"{buffer.tell()} bytes with {colours} colours are too many; at most {MAX_BYTES} fit")
+    raise ValueError(f"{path.name}: no stored picture in {cell_id or 'any cell'}; refresh it, or choose another cell")
 
 
 def write_pictures(folder: Path) -> list[Path]:
-    """Write NN.png of every lesson into `folder` and return the paths. Raises `SeriesPictureError`."""
+    """Write NN.png of every lesson into `folder` and return the paths. Raises `ValueError`."""
     folder.mkdir(parents=True, exist_ok=True)
     lessons = {path.name[:2]: path for path in notebook_paths()}
     for number, path in lessons.items():
-        atomic_write(folder / f"{number}.png", small_png(stored_picture(path, CHOSEN.get(number))))
+        picture = stored_picture(path, CHOSEN.get(number))
+        width = min(MAX_SIZE[0], MAX_SIZE[1] * picture.width // picture.height)
+        atomic_write(folder / f"{number}.png", small_png(picture, width, MAX_BYTES))
     return [folder / f"{number}.png" for number in lessons]
 
 

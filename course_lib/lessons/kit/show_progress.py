@@ -28,19 +28,16 @@ _HTML = """<!doctype html>
 <title>Your progress</title>
 <link rel="icon" href="data:,">
 <style>
-:root {{ color-scheme: light dark; --ink: #1f1f1f; --paper: #fff; --line: #8a8a8a; --band: #eef1f5; --bar: #2b6cb0; }}
-@media (prefers-color-scheme: dark) {{
-  :root {{ --ink: #e8e8e8; --paper: #1b1b1b; --line: #8f8f8f; --band: #2a2d31; --bar: #7db7ec; }}
-}}
-body {{ margin: 1rem auto; padding: 0 1rem; max-width: 62rem; font: 1rem/1.45 sans-serif; color: var(--ink);
-  background: var(--paper); }}
+:root {{ color-scheme: light dark; --line: #8a8a8a; --band: #eef1f5; --bar: #2b6cb0; }}
+@media (prefers-color-scheme: dark) {{ :root {{ --band: #2a2d31; --bar: #7db7ec; }} }}
+body {{ margin: 1rem auto; padding: 0 1rem; max-width: 62rem; font: 1rem/1.45 sans-serif; }}
 .scrolls {{ overflow-x: auto; }}
 table {{ border-collapse: collapse; width: 100%; margin: 1rem 0; }}
 caption {{ text-align: left; font-weight: bold; font-size: 1.15rem; padding: 0.3rem 0; }}
 th, td {{ text-align: left; vertical-align: top; padding: 0.3rem 0.6rem; border-bottom: 1px solid var(--line); }}
 tbody th {{ font-weight: normal; }}
-tr.done th, tr.done td, tfoot th, tfoot td {{ background: var(--band); }}
-tfoot th, tfoot td {{ font-weight: bold; }}
+tr.done, tfoot {{ background: var(--band); }}
+tfoot td {{ font-weight: bold; }}
 .bar {{ display: block; height: 0.35rem; width: 6rem; border: 1px solid var(--line); }}
 .bar span {{ display: block; height: 100%; background: var(--bar); }}
 </style>
