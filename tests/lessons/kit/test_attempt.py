@@ -11,13 +11,8 @@ from course_lib.lessons.kit.attempt import MAX_CHARACTERS, attempt
 
 def endless():
     while True:
-        pass
-
-
-def stubborn():
-    while True:
         try:
-            endless()
+            endless.x = 1
         except Exception:
             pass
 
@@ -29,8 +24,8 @@ def swallows_one_stop():
         endless()
 
 
-def fails(x=1):
-    y = x + 1
+def fails():
+    y = 1
     return y[7]
 
 
@@ -43,9 +38,12 @@ def floods():
         print("here")
 
 
+def interrupted():
+    raise KeyboardInterrupt
+
+
 def test_a_value_comes_back_with_what_was_printed(capsys):
-    result = attempt(lambda x: print("seen", x) or 2 * x, (3,))
-    assert (result.value, result.failure, result.printed) == (6, None, "seen 3\n")
+    assert attempt(lambda x: print("seen", x) or 2 * x, (3,)) == (6, None, "seen 3\n")
     assert capsys.readouterr().out == ""
 
 
@@ -53,12 +51,10 @@ def test_a_value_comes_back_with_what_was_printed(capsys):
     ("function", "words"),
     [
         (fails, "stops with TypeError in its line 3: 'int' object is not subscriptable."),
-        (sys.exit, "exit()"),
         (lambda: sys.exit("done"), "exit()"),
         (again, "calls itself without end"),
         (floods, "prints more than"),
         (endless, "does not end within 0.2 seconds"),
-        (stubborn, "does not end"),
         (swallows_one_stop, "does not end"),
     ],
 )
@@ -69,17 +65,11 @@ def test_whatever_a_function_does_is_a_sentence_and_the_thread_lives_on(function
     assert attempt(lambda: sum(range(1000)), ()).value == 499500
 
 
-def test_no_stop_arrives_after_the_call():
+def test_no_stop_arrives_after_the_call_and_the_stop_button_is_not_swallowed():
     before = set(threading.enumerate())  # other tests may have left some
     for _ in range(20):
         attempt(lambda: time.sleep(0.01), (), seconds=0.01)
         time.sleep(0.002)
     assert set(threading.enumerate()) <= before
-
-
-def test_the_stop_button_is_not_swallowed():
-    def interrupted():
-        raise KeyboardInterrupt
-
     with pytest.raises(KeyboardInterrupt):
         attempt(interrupted, ())

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from course_lib.lessons.kit.compression import png_bytes
+from course_lib.lessons.kit.compression import compress, png_bytes
 from course_lib.lessons.kit.display import FigureError, Picture, described, require_labels, show
 from course_lib.plots import figures
 
@@ -16,6 +16,10 @@ def finished_figure():
     axes.plot([0, 1], [0, 1], **figures.line_style(0))
     axes.set(title="A line", xlabel="x [m]", ylabel="weight [-]")
     return described(figure, "A line that rises from left to right."), axes
+
+
+def pixels(png: bytes) -> np.ndarray:
+    return np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(int)
 
 
 @pytest.mark.parametrize(
@@ -37,21 +41,22 @@ def test_a_colour_bar_needs_a_unit_too():
         require_labels(figure)
 
 
-def test_a_photograph_keeps_its_colours(monkeypatch):
+def test_a_photograph_keeps_its_colours_and_a_drawing_its_few(monkeypatch):
     """A palette makes patches of a smooth ramp of a thousand colours."""
-    ramp = np.stack(np.meshgrid(np.linspace(0, 1, 200), np.linspace(0, 1, 100)), axis=-1)
     figure, axes = finished_figure()
-    axes.imshow(np.dstack([ramp, 1 - ramp[..., :1]]), extent=(0, 1, 0, 1))
+    u, v = np.meshgrid(np.linspace(0, 1, 200), np.linspace(0, 1, 100))
+    axes.imshow(np.dstack([u, v, 1 - u]), extent=(0, 1, 0, 1))
     shown = []
     monkeypatch.setattr("course_lib.lessons.kit.display.display", shown.append)
     show(figure)
     show(figure, photograph=True)
-    rgb = [np.asarray(Image.open(io.BytesIO(one.data)).convert("RGB")).reshape(-1, 3) for one in shown]
-    few, many = (len(np.unique(colours, axis=0)) for colours in rgb)
+    few, many = (len(np.unique(pixels(one.data).reshape(-1, 3), axis=0)) for one in shown)
     assert few <= 128
     assert many > 1000
     assert len(shown[0].data) < 40_000
     assert "data:image/webp;base64," in shown[1].html()
+    drawing = np.kron(np.random.default_rng(0).integers(0, 255, (4, 5, 3)), np.ones((20, 20, 1))).astype(np.uint8)
+    assert np.abs(pixels(compress(drawing)) - drawing).max() <= 12
 
 
 @pytest.mark.parametrize("alt", ["", "a plot", "one two three"])

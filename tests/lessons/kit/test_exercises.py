@@ -21,8 +21,6 @@ def one_more(limit):
 MISTAKES = """
     2 * x => x + 0
     You return what you were given.
-    2 * x => x**2
-    You square.
 """
 DOUBLE = Exercise("99.1", double, lambda rng: (rng.normal(size=(2, 3)),), mistakes=MISTAKES)
 PAIR = Exercise("99.2", lambda x: (x.min(), x.max()), lambda rng: (rng.normal(size=4),))
@@ -34,7 +32,7 @@ ABOVE = Exercise(
     "99.7", one_more, lambda rng: (rng.normal(),), mistakes="limit + 1 => limit\nEqual is not above.",
     verify=lambda given, answer: None if np.asarray(answer) > given[0] else "Yours is not above the limit.",
 )  # fmt: skip
-CORNER = Exercise("99.8", double, DOUBLE.inputs, cases={"an empty list": lambda rng: (np.zeros(0),)})
+CORNER = Exercise("99.8", TOTAL.solution, TOTAL.inputs, cases={"an empty list": lambda rng: (np.zeros(0),)})
 
 
 def stub(x):
@@ -70,17 +68,12 @@ def test_a_stub_is_not_attempted(function):
     [
         (DOUBLE, lambda x: x + x),
         (DOUBLE, lambda x: (x + x).tolist()),
-        (DOUBLE, lambda x: (x * 2).astype(np.float32)),
         (THIRD, lambda x: np.float32(x) / np.float32(3)),
         (TOTAL, lambda x: x.sum(keepdims=True)),
         (TOTAL, lambda x: [[x.sum()]]),
-        (PAIR, lambda x: [x.min(), x.max()]),
         (PAIR, lambda x: np.array([x.min(), x.max()])),
-        (MIDDLE, np.median),
         (MIDDLE, lambda x: sum(x) / len(x)),
         (ABOVE, lambda limit: limit + 0.5),
-        (ABOVE, lambda limit: 100.0),
-        (CORNER, lambda x: 2 * x),
     ],
 )
 def test_another_way_to_the_same_values_is_right(exercise, function):
@@ -91,19 +84,13 @@ def test_another_way_to_the_same_values_is_right(exercise, function):
     ("exercise", "function", "words"),
     [
         (DOUBLE, lambda x: x, "not yet. You return what you were given."),
-        (DOUBLE, lambda x: x * x, "not yet. You square."),
         (DOUBLE, lambda x: 2.0001 * x, "Nearly right"),
-        (DOUBLE, lambda x: np.exp(x), "Work one small case by hand"),
         (DOUBLE, fails, "IndexError in its line 3"),
-        (DOUBLE, lambda: 1, "TypeError"),
-        (DOUBLE, forgot_return, "returns None"),
         (DOUBLE, lambda x: None if x.sum() > 0 else 2 * x, "returns None"),
         (DOUBLE, in_place, "changes the array"),
         (DOUBLE, lambda x: x[0], "must have shape (2, 3); yours has (3,)"),
-        (DOUBLE, lambda x: np.atleast_3d(2 * x), "yours has (2, 3, 1)"),
         (DOUBLE, lambda x: "two", "returns a str"),
         (DOUBLE, lambda x: [[1, 2], [3]], "returns a list"),
-        (DOUBLE, lambda x: 2j * x, "returns a ndarray"),
         (DOUBLE, lambda x: x * np.nan, "There is a NaN"),
         (DOUBLE, lambda x: x * np.inf, "division by zero"),
         (DOUBLE, 5, "without calling it; this is a int"),
@@ -112,17 +99,14 @@ def test_another_way_to_the_same_values_is_right(exercise, function):
         (HOLE, np.abs, "a finite number where inf is expected"),
         (TOTAL, lambda x: [x.sum(), x.sum()], "must have shape ()"),
         (THIRD, lambda x: (np.float32(x) / np.float32(3)).astype(float), "Nearly right"),
-        (THIRD, lambda x: np.float32(x) / np.float32(3) * np.float32(1.0001), "Nearly right"),
         (PAIR, lambda x: (x.max(), x.min()), "in another order"),
         (PAIR, lambda x: x.min(), "Return 2 values, separated by commas; yours returns a float64."),
-        (PAIR, lambda x: (x.min(), x.max(), 0), "returns a tuple of 3."),
         (PAIR, lambda x: np.array([x.min()]), "returns a ndarray of 1."),
         (PAIR, lambda x: np.array(x.min()), "returns a ndarray."),
         (MIDDLE, lambda x: np.median(x) if x[0] > 0 else x.mean(), "which case is left out?"),
         (ABOVE, lambda limit: limit - 1, "not yet. Yours is not above the limit."),
         (ABOVE, lambda limit: limit, "not yet. Equal is not above."),
         (ABOVE, print, "returns None"),
-        (CORNER, lambda x: 2 * x if x.size else np.zeros((1, 0)), "must have shape (0,)"),
         (MIDDLE, lambda x: np.exp(x.min()), "Work one small case by hand"),
     ],
 )
@@ -132,8 +116,7 @@ def test_a_wrong_answer_gets_its_sentence(exercise, function, words):
 
 
 def test_a_special_case_is_named_and_other_cases_are_counted():
-    total = Exercise("99.9", TOTAL.solution, TOTAL.inputs, cases=CORNER.cases)
-    missed = judge(total, lambda x: x.sum() if x.size else 1.0).message
+    missed = judge(CORNER, lambda x: x.sum() if x.size else 1.0).message
     assert missed == "not yet. Right on all ordinary inputs, wrong on a special case: an empty list."
     message = judge(DOUBLE, lambda x: 2 * x if x.sum() > 0 else x + 1).message
     right, of, wrong = map(int, re.search(r"Right on (\d+) of (\d+) inputs, wrong on (\d+)", message).groups())

@@ -1,6 +1,5 @@
 """Progress: counted from the lessons and the records."""
 
-import json
 import os
 
 import nbformat
@@ -9,29 +8,9 @@ import pytest
 from course_lib.lessons.kit import lesson_progress
 from course_lib.lessons.kit.exercises import lesson_exercises
 from course_lib.lessons.kit.lesson_progress import Progress, progress_in, tables
-from course_lib.lessons.kit.student_record import RECORD
 from course_lib.paths import notebook_paths, project_paths
 
 ASKED = Progress("06 · Likelihood", 2, ("06.1", "06.2", "06.3", "06.4"))
-
-
-@pytest.fixture
-def record(tmp_path, monkeypatch):
-    """The folder of a student's record."""
-    folder = tmp_path / "work" / "record"
-    folder.mkdir(parents=True)
-    monkeypatch.setenv(RECORD, str(folder))
-    return folder
-
-
-def keep(record, lesson, predictions=(), **checks):
-    """Write a record file: predictions typed, exercises with their status (r for right, w for wrong, n for none)."""
-    words = {"r": "right", "w": "wrong", "n": "not attempted"}
-    content = {
-        "predictions": {str(n): text for n, text in enumerate(predictions, start=1)},
-        "checks": {f"{lesson}.{n[1:]}": {"status": words[s], "attempts": 1} for n, s in checks.items()},
-    }
-    (record / f"{lesson}.json").write_text(json.dumps(content))
 
 
 @pytest.mark.parametrize("path", [*notebook_paths(), *project_paths()], ids=lambda path: path.name[:2])
@@ -58,34 +37,32 @@ def test_predictions_are_counted_where_the_lesson_asks_them_and_anew_when_it_was
 
 
 @pytest.mark.parametrize(
-    ("predictions", "checks", "typed", "right", "attempted", "state"),
+    ("predictions", "letters", "typed", "right", "attempted", "state"),
     [
-        (["ten", " "], {}, 1, (), (), "begun"),
-        (["ten", "far", "asked no more"], {"_1": "r", "_2": "w", "_3": "n", "_9": "r"}, 2, "1", "12", "begun"),
-        (["ten", "far"], dict.fromkeys(("_1", "_2", "_3", "_4"), "r"), 2, "1234", "1234", "done"),
-        (["ten"], dict.fromkeys(("_1", "_2", "_3", "_4"), "r"), 1, "1234", "1234", "begun"),
-        ([], {"_1": "n"}, 0, (), (), "not begun"),
+        (["ten", " "], "", 1, "", "", "begun"),
+        (["ten", "far", "asked no more"], "rwnnr", 2, "1", "12", "begun"),
+        (["ten", "far"], "rrrr", 2, "1234", "1234", "done"),
+        (["ten"], "rrrr", 1, "1234", "1234", "begun"),
+        ([], "n", 0, "", "", "not begun"),
     ],
 )
 def test_a_row_says_what_was_typed_tried_and_right(
-    record, monkeypatch, predictions, checks, typed, right, attempted, state
+    record, keep, monkeypatch, predictions, letters, typed, right, attempted, state
 ):
     monkeypatch.setattr(lesson_progress, "_asked", lambda path, written: ASKED)
-    keep(record, "06", predictions, **checks)
-    right, attempted = (tuple(f"06.{n}" for n in numbers) for numbers in (right, attempted))
+    keep("06", letters, predictions)
     one = progress_in(record / "06.json")
+    right, attempted = (tuple(f"06.{n}" for n in numbers) for numbers in (right, attempted))
     assert one == Progress(ASKED.title, 2, ASKED.exercises, typed, right, attempted)
     assert one.state == state
 
 
-def test_the_rows_add_up(record):
-    keep(record, "06", _1="r", _2="w")
-    keep(record, "07", _1="r")
-    keep(record, "P1", _1="r")
+def test_the_rows_add_up(keep):
+    keep("06", "rw")
+    keep("07", "r")
+    keep("P1", "r")
     lessons, projects = tables()
     total = sum(len(lesson_exercises(path.name[:2])) for path in notebook_paths())
     assert lessons.rows()[-1][:3] == ("together", f"2 of {total}", f"3 of {total}")
-    assert projects.rows()[-1][1].startswith("1 of ")
-    row = dict(zip(lessons.headings, lessons.rows()[6], strict=True))
-    assert (row["checks right"], row["attempted"], row["not right yet"]) == ("1 of 4", "2 of 4", "06.2")
+    assert lessons.rows()[6][1:] == ("1 of 4", "2 of 4", "0 of 3", "begun", "06.2")
     assert [cells[3] for cells in projects.rows()] == ["begun", *["not begun"] * 3, "0 of 4 done"]

@@ -138,27 +138,20 @@ def test_only_plain_widgets_are_used_each_with_a_name_and_no_tooltip_that_reads_
     assert widget_of(panel, ipywidgets.BoundedFloatText).style.description_width == "0px"  # heard, not seen twice
 
 
-@pytest.mark.parametrize("continuous", [True, False])
-def test_slow_panels_redraw_on_release(make, continuous):
-    assert widget_of(make(continuous=continuous), ipywidgets.FloatSlider).continuous_update is continuous
-
-
 @pytest.mark.parametrize("letters", [5, 40])
-def test_a_long_label_gets_the_room_that_it_needs_and_the_slider_keeps_its_own(make, letters):
-    panel = make(Slider("x", "x" * letters, 0, 4, 1, 0.5), Switch("on", "o" * 60))
+def test_a_long_label_gets_the_room_that_it_needs_and_a_slow_panel_redraws_on_release(make, letters):
+    panel = make(Slider("x", "x" * letters, 0, 4, 1, 0.5), Switch("on", "o" * 60), continuous=letters < 40)
     slider = widget_of(panel, ipywidgets.FloatSlider)
+    assert slider.continuous_update is (letters < 40)
     label_em = float(slider.style.description_width.removesuffix("em"))
     assert label_em == pytest.approx(max(14, 0.55 * letters))  # 0.52 em a letter was measured in JupyterLab
     assert float(slider.layout.width.removesuffix("em")) == pytest.approx(label_em + 20)
     assert widget_of(panel, ipywidgets.Checkbox).layout.width == "auto"  # else it is 300 px wide, and its label cut
 
 
-@pytest.mark.parametrize("controls", [[Switch("a", "one"), Switch("a", "two")], []])
-def test_controls_need_names_of_their_own(controls):
-    with pytest.raises(ValueError, match="different names"):
-        Panel("test", controls, lambda **values: None)
-
-
-def test_a_picture_without_alternative_text_is_refused():
+def test_controls_need_names_of_their_own_and_pictures_words():
+    for controls in ([Switch("a", "one"), Switch("a", "two")], []):
+        with pytest.raises(ValueError, match="different names"):
+            Panel("test", controls, lambda **values: None)
     with pytest.raises(FigureError):
         Panel("test", [SWITCH], lambda on: Drawing(PNG, "", "nothing"))

@@ -1,23 +1,14 @@
-"""Predictions are kept, come back after a new start, and stand beside what was measured; the record is never lost."""
+"""Predictions are kept, come back after a new start, and stand beside what was measured."""
 
 import json
 
 import pytest
 
-from course_lib.lessons.kit import predictions
 from course_lib.lessons.kit.exercises import check
 from course_lib.lessons.kit.predictions import Predictions, predict, recall
 from course_lib.lessons.kit.student_record import RECORD, read_record
 
 QUESTIONS = ("How many times more?", "How far away?")
-
-
-@pytest.fixture
-def record(tmp_path, monkeypatch):
-    """The folder of a student's record."""
-    monkeypatch.setenv(RECORD, str(tmp_path / "record"))
-    monkeypatch.setattr(predictions, "_ASKED", {})
-    return tmp_path / "record"
 
 
 def test_what_is_typed_is_kept_and_stands_in_the_box_again(record):
@@ -47,6 +38,8 @@ def test_the_prediction_is_shown_beside_the_measured_answer(record, capsys):
         "   you said: (nothing yet: type it in under Predict)",
         "   measured: 0.30 m",
     ]
+    with pytest.raises(ValueError, match="1 measured answers for 2"):
+        recall("06", "2.0 times")
 
 
 def test_without_a_record_nothing_is_written_and_only_what_was_measured_is_printed(record, monkeypatch, capsys):
@@ -57,12 +50,10 @@ def test_without_a_record_nothing_is_written_and_only_what_was_measured_is_print
     recall("06", "2.0 times")
     assert capsys.readouterr().out.splitlines() == ["1. Prediction 1", "   measured: 2.0 times"]
     check("06.1", lambda hidden, alpha: hidden)
-    assert list(record.parent.iterdir()) == []
+    assert [*record.iterdir(), *record.parent.iterdir()] == [record]
 
 
-def test_another_number_of_answers_than_questions_is_an_error(record):
-    predict("06", *QUESTIONS)
-    with pytest.raises(ValueError, match="1 measured answers for 2"):
-        recall("06", "2.0 times")
+@pytest.mark.parametrize("questions", [(), ("Why?", " ")])
+def test_boxes_without_words_are_refused(record, questions):
     with pytest.raises(ValueError, match="question in words"):
-        predict("06")
+        predict("06", *questions)

@@ -11,12 +11,11 @@ from PIL import Image
 from course_lib.lessons import show_scene
 from course_lib.lessons.kit import scene
 from course_lib.lessons.kit.display import FigureError
-from course_lib.lessons.kit.scene import MAX_PICTURE_BYTES, Scene, same_scene, small_picture
+from course_lib.lessons.kit.scene import MAX_PICTURE_BYTES, Scene, small_picture
 from course_lib.paths import STORE_SCENES
 from course_lib.plots import scenes
 from course_lib.plots.scene_page import ScenePageError
 from course_lib.plots.scenes import SceneError
-from tests.plots.test_scene_page import STATE, axes_page
 
 WORDS = {"title": 'Axes & "more"', "alt": "The axes of a pose seen from above"}
 STORED, YOURS = "scenes/99_axes.html", "scenes/yours/99_axes.html"
@@ -60,22 +59,17 @@ def test_a_scene_is_a_titled_frame_and_below_it_a_folded_picture(shown):
     assert Scene("scenes/a.html", "A page that another program wrote", 300).html().endswith("</iframe>")
 
 
-def test_the_same_lines_write_nothing_and_changed_ones_leave_the_stored_page_alone(shown, tmp_path):
+def test_the_same_lines_write_nothing_and_others_leave_the_stored_page_alone(shown, tmp_path):
+    assert YOURS in shown(), "a lesson without its stored page"
     shown(store=True)
     before = pages(tmp_path)
-    assert list(before) == [STORED]
     assert STORED in shown()
-    assert STORED in shown(x=1.00001), "as another processor rounds"
     assert pages(tmp_path) == before
     assert YOURS in shown(x=1.1)
     after = pages(tmp_path)
-    assert after.keys() == {STORED, YOURS}
+    assert before.keys() == after.keys() == {STORED, YOURS}
     assert before[STORED] == after[STORED]
-
-
-def test_a_lesson_without_its_stored_page_writes_its_own(shown, tmp_path):
-    assert YOURS in shown()
-    assert list(pages(tmp_path)) == [YOURS]
+    assert before[YOURS] != after[YOURS]
 
 
 def test_where_no_page_can_be_made_or_written_the_picture_is_shown_and_the_cure(shown, tmp_path, monkeypatch):
@@ -112,14 +106,3 @@ def test_words_and_objects_are_needed(shown):
         shown(alt="axes")
     with pytest.raises(SceneError, match="empty"):
         show_scene(scenes.new_plotter(), "99_axes", **WORDS)
-
-
-@pytest.mark.parametrize(
-    "change",
-    [{"state": STATE + 0.01}, {"colour": "#D55E00"}, {"title": "Other axes"}, {"alt": "The axes of another pose"}],
-    ids=["place", "colour", "title", "words"],
-)
-def test_pages_that_differ_show_something_else(change):
-    page = axes_page()
-    assert same_scene(axes_page(STATE + 1e-5), page)
-    assert not same_scene(axes_page(**change), page)
