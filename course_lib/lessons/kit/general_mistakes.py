@@ -86,9 +86,7 @@ def value_slips(wanted: list) -> Iterator[tuple[str, Callable]]:
 
 
 def _changed(change: Callable, which: Sequence[int], value: object) -> object:
-    arrays = (
-        np.asarray(part, float) if np.asarray(part).dtype.kind == "b" else np.asarray(part) for part in parts(value)
-    )
+    arrays = (np.asarray(part) * 1 for part in parts(value))  # numbers in place of truth values
     changed = tuple(change(part) if k in which else part for k, part in enumerate(arrays))
     return changed if isinstance(value, tuple) else changed[0]
 
@@ -214,12 +212,8 @@ def constant_difference(answers: list, wanted: list, tolerance: float) -> str | 
     ]
     if any(a is None or a.shape != w.shape for a, w in pairs):
         return None
-    sizes = [np.abs(w[np.isfinite(w)]).max(initial=0.0) for _, w in pairs]
     for share, sentence in ((0.01, NEARLY), (0.05, CLOSE)):
-        if all(
-            np.allclose(*pair, rtol=0, atol=share * size, equal_nan=True)
-            for pair, size in zip(pairs, sizes, strict=True)
-        ):
+        if all(np.allclose(a, w, rtol=0, atol=share * _size(w), equal_nan=True) for a, w in pairs):
             return sentence
     a, w = (np.concatenate([np.ravel(pair[k]) for pair in pairs]) for k in (0, 1))
     telling = np.isfinite(a) & np.isfinite(w) & (w != 0)
@@ -230,3 +224,7 @@ def constant_difference(answers: list, wanted: list, tolerance: float) -> str | 
         if np.any(right) and np.allclose(a, right, rtol=tolerance, atol=tolerance, equal_nan=True):
             return sentence
     return None
+
+
+def _size(values: np.ndarray) -> float:
+    return np.abs(values[np.isfinite(values)]).max(initial=0.0)

@@ -10,12 +10,12 @@ import html
 import ipywidgets as widgets
 from IPython.display import display
 
+from course_lib.lessons.kit.panel import VIEW
 from course_lib.lessons.kit.show_progress import update_page
 from course_lib.lessons.kit.student_record import RecordError, read_record, record_folder, record_prediction
 
 _ASKED: dict[str, tuple[str, ...]] = {}  # lesson -> the questions that this kernel has shown; `recall` repeats them
 FORGOTTEN = "Noted, but not kept: `python3 course.py lab` keeps predictions in the folder work/."
-VIEW = "application/vnd.jupyter.widget-view+json"
 
 
 class Predictions:
