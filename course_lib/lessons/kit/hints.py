@@ -69,7 +69,7 @@ def _difference(answer: object, right: object, inf_is_an_answer: bool) -> str | 
         if values.shape != np.shape(r):
             return f"The result must have shape {np.shape(r)}; yours has {values.shape}."
         nan, inf, wanted_inf = np.isnan(values), np.isinf(values), np.isinf(r)
-        if (wanted_inf & nan).any() and not (np.isfinite(r) & nan).any():
+        if (wanted_inf & nan).any() and (np.isnan(r).any() or not (np.isfinite(r) & nan).any()):
             return "Yours is nan where inf is expected."
         if nan.any() and not np.isnan(r).any():
             return "There is a NaN in your result: look for 0/0, inf - inf or the logarithm of a negative number."
