@@ -40,9 +40,10 @@ class BoxWorld:
 
     def __init__(self, boxes: Sequence[Box]) -> None:
         self.boxes = tuple(boxes)
-        if not self.boxes or any((np.asarray(box.high) <= box.low).any() for box in boxes):
+        self.low, self.high = (np.array([box[k] for box in self.boxes], dtype=np.float64) for k in (0, 1))
+        if not self.boxes or (self.high <= self.low).any():
             raise ValueError("a box world needs boxes, and every coordinate of a box's `high` must be above its `low`")
-        self.reflectivity = np.array([box.reflectivity for box in boxes], dtype=np.float64)
+        self.reflectivity = np.array([box.reflectivity for box in self.boxes], dtype=np.float64)
 
     def cast(self, origins: np.ndarray, directions: np.ndarray) -> Hits:
         """Return the first hit of each ray. Origins [m] and directions broadcast to `(..., 3)`.
@@ -60,7 +61,7 @@ class BoxWorld:
             inverse = [1 / axis for axis in d]
         distance = np.full(shape, np.inf, np.float32)
         face, entered = np.full(shape, -1, np.int32), np.zeros(shape, np.int8)
-        for number, (low, high, _) in enumerate(self.boxes):
+        for number, (low, high) in enumerate(zip(self.low, self.high, strict=True)):
             enters, leaves = np.full(shape, -np.inf, np.float32), np.full(shape, np.inf, np.float32)
             axis = np.zeros(shape, np.int8)
             for k in range(3):

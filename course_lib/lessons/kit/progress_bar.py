@@ -31,9 +31,9 @@ class _OutputLine(io.StringIO):
         self._handle.update(self._at_rest, raw=True)
 
 
-def progress(iterable: Iterable, description: str) -> Iterator:
+def progress(iterable: Iterable, description: str, total: int | None = None) -> Iterator:
     """Iterate with a progress bar. Use it for a task of more than two seconds. Outside a notebook it is plain tqdm."""
-    options = {"desc": description, "leave": False}
+    options = {"desc": description, "total": total, "leave": False}
     if get_ipython() is None:
         yield from tqdm(iterable, **options)
         return
