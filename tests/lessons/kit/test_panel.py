@@ -14,11 +14,7 @@ from course_lib.lessons.kit.panel import VIEW, Choice, Drawing, Panel, Slider, S
 from course_lib.plots import figures
 
 PNG = png_bytes(figures.new_figure(size=(1, 1))[0])
-SLIDER, CHOICE, SWITCH = (
-    Slider("x", "x [m]", 0.01, 4, 1, 0.05),
-    Choice("kind", "kind", ("a", "b"), "a"),
-    Switch("on", "on"),
-)
+CONTROLS = [Slider("x", "x [m]", 0.01, 4, 1, 0.05), Choice("kind", "kind", ("a", "b"), "a"), Switch("on", "on")]
 
 
 @pytest.fixture
@@ -36,7 +32,7 @@ def make(drawn):
         return Drawing(PNG, f"A test picture with x {x:g}, {others}", f"x = {x:g} <m>")
 
     def made(*controls, **options) -> Panel:
-        panel = Panel("test", controls or [SLIDER, CHOICE, SWITCH], draw, **options)
+        panel = Panel("test", controls or CONTROLS, draw, **options)
         drawn.clear()
         return panel
 
@@ -52,7 +48,7 @@ def widget_of(panel: Panel, kind: type):
 
 
 def test_a_slider_and_its_number_box_move_together_and_draw_once(make, drawn):
-    panel = make(SLIDER)
+    panel = make(CONTROLS[0])
     slider, box = widget_of(panel, ipywidgets.FloatSlider), widget_of(panel, ipywidgets.BoundedFloatText)
     slider.value = 0.15000000000000002  # as a browser says it
     assert box.value == panel.values()["x"] == 0.15
@@ -65,7 +61,7 @@ def test_a_slider_and_its_number_box_move_together_and_draw_once(make, drawn):
 
 def test_a_slider_is_not_told_what_it_said_itself(make):
     """By the time it hears of it the reader may have moved it on: it would jump back and stay there."""
-    panel = make(SLIDER)
+    panel = make(CONTROLS[0])
     slider = widget_of(panel, ipywidgets.FloatSlider)
     slider.set_state({"value": 0.15000000000000002})  # a message of the browser
     assert slider.value == 0.15000000000000002
@@ -154,4 +150,4 @@ def test_controls_need_names_of_their_own_and_pictures_words():
         with pytest.raises(ValueError, match="different names"):
             Panel("test", controls, lambda **values: None)
     with pytest.raises(FigureError):
-        Panel("test", [SWITCH], lambda on: Drawing(PNG, "", "nothing"))
+        Panel("test", CONTROLS[2:], lambda on: Drawing(PNG, "", "nothing"))
