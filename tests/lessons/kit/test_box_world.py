@@ -12,11 +12,14 @@ AHEAD = Box((2.0, -1.0, -1.0), (3.0, 1.0, 1.0), 0.5)
 
 
 def test_a_ray_meets_the_nearest_face_or_none_and_its_slant_is_measured_on_this_face():
-    rays = np.array([[1.0, 0, 0], [2.0, 0, 0], [1.0, 0.3, 0.0], [1.0, 0.0, -0.2], [-1.0, 0, 0], [0, 1.0, 0]])
-    hits = BoxWorld([Box((4.0, -1.0, -1.0), (5.0, 1.0, 1.0), 0.2), AHEAD]).cast(np.zeros(3), rays)
-    assert hits.distance == pytest.approx([2.0, 1.0, 2.0, 2.0, np.inf, np.inf])
-    assert hits.cosine[:4] == pytest.approx(rays[:4, 0] / np.linalg.norm(rays[:4], axis=1), abs=1e-6)
-    assert hits.face.tolist() == [1, 1, 1, 1, -1, -1]
+    rays = np.array(
+        [[1.0, 0, 0], [2.0, 0, 0], [1.0, 0.3, 0], [1.0, 0, -0.2], [-1.0, 0, 0], [-1.0, 0.1, 0], [0, 1.0, 0]]
+    )
+    origins = np.array([[-0.5, 0.2, 0.1]] * 5 + [[5.5, 0.2, 0.1]] + [[-0.5, 0.2, 0.1]])
+    hits = BoxWorld([Box((4.0, -1.0, -1.0), (5.0, 1.0, 1.0), 0.2), AHEAD]).cast(origins, rays)
+    assert hits.distance == pytest.approx([2.5, 1.25, 2.5, 2.5, np.inf, 0.5, np.inf])
+    assert hits.cosine == pytest.approx((hits.face >= 0) * np.abs(rays[:, 0]) / np.linalg.norm(rays, axis=1), abs=1e-6)
+    assert hits.face.tolist() == [1, 1, 1, 1, -1, 0, -1]
 
 
 def test_the_boxes_and_their_triangles_give_the_same_depth_image():

@@ -19,7 +19,9 @@ def test_arrows_point_along_x_with_their_fin_up():
         darts[1], 0.4 * np.array([[0.6, 0, 0], [-0.4, 0.3, 0], [-0.4, -0.3, 0], [-0.2, 0, 0], [-0.4, 0, 0.2]])
     )
     assert np.asarray(mesh["weight"]).reshape(2, 5).tolist() == [[0.25] * 5, [0.75] * 5]
-    assert mesh.n_cells == 6
+    first, second = mesh.regular_faces.reshape(2, 3, 3)
+    assert second.tolist() == (first + 5).tolist()
+    assert np.allclose(mesh.cell_centers().points[3:, 1], [0.04, -0.04, 0.0]), "two halves, and a fin between them"
 
 
 def test_a_depth_image_becomes_the_surface_that_it_shows():
