@@ -17,6 +17,7 @@ def test_medians_and_shares_are_said_with_unit_and_interval():
     assert median_text([0.04]) == "0.040 m (one value)"
     assert median_text(np.array([])) == "no number (of no values)"
     assert share_text(5, 11) == "5 of 11 = 45 % (21 to 72 %)"
+    assert share_text(3, 3) == "3 of 3 = 100 % (44 to 100 %)"
     assert share_text(2902, 2908, 1) == "2902 of 2908 = 99.8 % (99.6 to 99.9 %)"
 
 

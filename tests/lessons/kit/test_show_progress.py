@@ -73,10 +73,13 @@ def test_a_check_and_a_prediction_bring_the_page_up_to_date_or_go_on_without_it(
     assert {path.name for path in record.parent.iterdir()} == {"progress.html", "record"}
 
 
-def test_without_a_record_no_page_is_written(tmp_path, monkeypatch):
+def test_without_a_record_no_page_is_written(tmp_path, monkeypatch, capfd):
     monkeypatch.delenv(RECORD, raising=False)
     monkeypatch.chdir(tmp_path)
     update_page()
+    monkeypatch.setenv(RECORD, str(tmp_path / "work" / "record"))
+    assert main(["progress"]) == 0
+    assert "There is no folder work/ yet" in capfd.readouterr().out
     assert list(tmp_path.iterdir()) == []
 
 
