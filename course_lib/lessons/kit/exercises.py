@@ -47,7 +47,7 @@ class Exercise:
     solution: Callable
     inputs: Callable[[np.random.Generator], tuple]
     level: Literal["warm-up", "core", "challenge"] = "core"
-    cases: dict[str, Callable[[np.random.Generator], tuple]] | Sequence[Callable] = field(default_factory=dict)
+    cases: dict[str, Callable[[np.random.Generator], tuple]] = field(default_factory=dict)
     mistakes: str = ""
     functions: dict[Callable, str] = field(default_factory=dict)
     tolerance: float = 1e-6
@@ -56,15 +56,7 @@ class Exercise:
 
     def draw(self, rng: np.random.Generator) -> list[tuple]:
         """Return the arguments of every call of one check: the cases, then `N_INPUTS` random inputs."""
-        cases = self.cases.values() if isinstance(self.cases, dict) else self.cases
-        return [make(rng) for make in (*cases, *[self.inputs] * N_INPUTS)]
-
-    @property
-    def case_names(self) -> list[str]:
-        """Return the special cases in words: "one point" for `one_point`."""
-        if isinstance(self.cases, dict):
-            return list(self.cases)
-        return [make.__name__.strip("_").replace("_", " ") for make in self.cases]
+        return [make(rng) for make in (*self.cases.values(), *[self.inputs] * N_INPUTS)]
 
     @functools.cached_property
     def known(self) -> tuple[Mistake, ...]:

@@ -35,7 +35,7 @@ def hint(exercise: Exercise, arguments: list[tuple], answers: list) -> str:
         if (sentence := _difference(answer, right, inf_is_an_answer)) is not None:
             return sentence
     right = [agree(a, w, exercise.tolerance) for a, w in zip(answers, wanted, strict=True)]
-    names = exercise.case_names  # of the first inputs
+    names = list(exercise.cases)  # of the first inputs
     if not any(right):
         return "Shape and type fit, but the values differ on every input. Work one small case by hand and compare."
     if all(right[len(names) :]):
