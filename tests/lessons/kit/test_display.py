@@ -39,6 +39,8 @@ def test_a_colour_bar_needs_a_unit_too():
     figures.colour_bar(figure, figures.depth_image(axes, np.ones((3, 4)), "Depth", (0, 2)), axes, "depth")
     with pytest.raises(FigureError, match="colour bar"):
         require_labels(figure)
+    figure.axes[-1].set_ylabel("depth [m]")
+    require_labels(figure)
 
 
 def test_a_photograph_keeps_its_colours_and_a_drawing_its_few(monkeypatch):
@@ -67,7 +69,7 @@ def test_alternative_text_must_say_something(alt):
 
 @pytest.mark.parametrize(("inches", "least"), [(3, 300), (10, 640)])
 def test_a_picture_carries_its_words_and_is_scrolled_rather_than_shrunk_until_nobody_reads_it(inches, least):
-    bundle = Picture(png_bytes(figures.new_figure(size=(inches, 1))[0]), 'A "wall" <a>\n & b')._repr_mimebundle_()
-    assert 'alt="A &quot;wall&quot; &lt;a&gt; &amp; b" src="data:image/png;base64,' in bundle["text/html"]
+    bundle = Picture(png_bytes(figures.new_figure(size=(inches, 1))[0]), 'A "wall" <a>\n&')._repr_mimebundle_()
+    assert 'alt="A &quot;wall&quot; &lt;a&gt; &amp;" src="data:image/png;base64,' in bundle["text/html"]
     assert f"min-width: {least}px" in bundle["text/html"]
-    assert bundle["text/plain"] == 'Picture: A "wall" <a> & b'
+    assert bundle["text/plain"] == 'Picture: A "wall" <a> &'

@@ -51,6 +51,7 @@ def given_numbers(rng):
 TURNED = Exercise("99.1", turned, lambda rng: (a_rotation(rng), rng.normal(size=(5, 2)), rng.uniform(-3, 3)))
 SPREAD = Exercise("99.2", spread, given_numbers)
 FIRST = Exercise("99.3", first_below, lambda rng: (rng.integers(0, 4, 8).astype(float), 1.0))
+NEGATIVE = Exercise("99.8", lambda values: -np.abs(values), given_numbers)
 TAN = Exercise("99.4", np.tan, lambda rng: (rng.uniform(-1, 1, 3),))
 SQUARE = Exercise("99.5", column_means, lambda rng: (rng.normal(size=(3, 3)), rng.normal(size=(3, 3))))
 DEVIATION = Exercise("99.6", deviation, given_numbers)
@@ -85,6 +86,7 @@ def cubed(values):
         (SPREAD, cubed, general.ABSOLUTE),
         (SPREAD, lambda values: 1.003 * spread(values), general.NEARLY),
         (SPREAD, lambda values: round(spread(values), 3), general.NEARLY),
+        (NEGATIVE, lambda values: -np.abs(values) - 0.0001, general.NEARLY),
         (SPREAD, lambda values: 1.03 * spread(values), general.CLOSE),
         (SPREAD, lambda values: 1.4826 * spread(values), general.FACTOR),
         (SPREAD, lambda values: 1.5 + spread(values), general.OFFSET),

@@ -149,7 +149,7 @@ def test_stored_numbers_of_other_seeds_or_rivals_are_refused(lines, tmp_path, ch
 
 
 def test_an_unknown_project_is_named_and_stages_are_found_as_exercises_are():
-    with pytest.raises(projects.UnknownProjectError, match="no project 'P9'"):
+    with pytest.raises(projects.UnknownProjectError, match="no project 'P9'; there are P1, P2"):
         find_project("P9")
     assert find_exercise("P1.1").number == "P1.1"
     assert {"03", *project_names()} <= set(lesson_numbers())
