@@ -136,8 +136,7 @@ def grade_folder(
     Raises `SandboxError` if this machine has no walls and `trust` is not given.
     """
     roster = roster or Roster()
-    stubs = {one.number: function_name(one.stub) for a in read_assignments() for one in a.exercises()}
-    stubs |= {a.name: function_name(a.submission()) for a in read_assignments() if a.is_project}
+    stubs = function_names()
     found, not_read = collect(folder, {_lesson(number) for number in stubs}, roster)
     tried, machine = [], ""
     if not trust:
@@ -152,6 +151,14 @@ def grade_folder(
     not_read = sorted([*not_read, *unread])
     by_hand = points_by_hand(out / "by_hand.csv", entries)
     return Results(entries, not_read, roster, seed, tried, machine, by_hand)
+
+
+def function_names() -> dict[str, str]:
+    """Return the function that each exercise asks for, "06.1" -> "raw_score", and each project, "P1" -> "localize"."""
+    assignments = read_assignments()
+    stubs = {one.number: one.stub for each in assignments for one in each.exercises()}
+    stubs |= {each.name: each.submission() for each in assignments if each.is_project}
+    return {number: function_name(stub) for number, stub in stubs.items()}
 
 
 def _all(found: list[Submission], judged: Path, settings: tuple, jobs: int) -> Iterator[Entry]:
@@ -227,6 +234,8 @@ def points_by_hand(path: Path, entries: list[Entry]) -> dict[tuple[str, str], fl
         if row["points"].strip():
             points = float(row["points"].replace(",", "."))
             if not 0 <= points <= BY_HAND:
-                raise ValueError(f"{path}: {row['student']}, {row['project']}: points are from 0 to {BY_HAND}, not {points}")
+                raise ValueError(
+                    f"{path}: {row['student']}, {row['project']}: points are from 0 to {BY_HAND}, not {points}"
+                )
             given[row["student"], row["project"]] = points
     return given

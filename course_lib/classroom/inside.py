@@ -61,7 +61,9 @@ def main(path: str, call_seconds: float, seconds: float) -> None:
         return
     functions = {one.node.name: one.node for one in statements if isinstance(one.node, ast.FunctionDef)}
     shapes = {name: shape for name, node in functions.items() if (shape := digest(node))}
-    send(results, held._asdict() | {"cells": None, "functions": list(functions), "shapes": shapes, "problems": problems})
+    send(
+        results, held._asdict() | {"cells": None, "functions": list(functions), "shapes": shapes, "problems": problems}
+    )
     prepare(statements)
     while size := orders.read(8):
         order = pickle.loads(orders.read(struct.unpack("=Q", size)[0]))

@@ -257,7 +257,9 @@ def _outcome(project: Project, box: Sandbox, world: int) -> Outcome:
         if run.head.get("none") is not None:
             raise LookupError("Not attempted.")
         if run.head.get("forbidden"):
-            raise LookupError(f"Not scored: it uses {one_line(run.head['forbidden'])}, which is to be written yourself.")
+            raise LookupError(
+                f"Not scored: it uses {one_line(run.head['forbidden'])}, which is to be written yourself."
+            )
         failures = [one_line(one["failure"]) for one in run.calls if "failure" in one]
         if failures or run.ended or len(run.calls) < len(calls):
             raise AnswerError((failures or [run.ended or "does not answer every call"])[0])

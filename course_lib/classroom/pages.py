@@ -50,7 +50,9 @@ def write_results(results: Results, out: Path) -> list[str]:
 def feedback_name(student: str, taken: dict[str, str]) -> str:
     """Return a file name for a student's page that no other student has."""
     plain = re.sub(r"[^\w.@-]+", "_", student).strip("._")[:80] or "student"
-    name = next(n for k in range(1000) if taken.setdefault((n := f"{plain}-{k}" if k else plain).casefold(), student) == student)
+    name = next(
+        n for k in range(1000) if taken.setdefault((n := f"{plain}-{k}" if k else plain).casefold(), student) == student
+    )
     return f"{name}.html"
 
 

@@ -3,8 +3,8 @@
 import re
 
 from course_lib.classroom.assignment_cells import Assignment, ExerciseCells
-from course_lib.classroom.points import points_of
-from course_lib.classroom.score_worlds import LINES, MAX_POINTS, paper_value
+from course_lib.classroom.points import BY_HAND, SCORE_POINTS, points_of
+from course_lib.classroom.worlds import LINES, paper_value
 from course_lib.lessons.kit.exercises import find_exercise
 from course_lib.lessons.kit.projects import find_project
 
@@ -18,7 +18,7 @@ def rubric(assignment: Assignment, canary: str) -> str:
     """The page of one lesson or project, Markdown."""
     exercises = assignment.exercises()
     most = sum(points_of(find_exercise(one.number)) for one in exercises)
-    score = MAX_POINTS if assignment.is_project else 0
+    score = SCORE_POINTS + BY_HAND if assignment.is_project else 0
     parts = [
         f"# Rubric · {assignment.title}",
         f"For the teacher alone ({canary}).",
@@ -26,7 +26,9 @@ def rubric(assignment: Assignment, canary: str) -> str:
     ]
     parts += ["| exercise | level | points |\n|---|---|---|\n" + "\n".join(_row(one) for one in exercises)]
     if assignment.is_project:
-        parts[-1] += f"\n| {assignment.name}, the score | | {MAX_POINTS} |"
+        parts[-1] += (
+            f"\n| {assignment.name}, the score | | {SCORE_POINTS} |\n| the written part, by hand | | {BY_HAND} |"
+        )
     parts += [_exercise(one) for one in exercises]
     if assignment.is_project:
         parts.append(_score(assignment.name))
@@ -67,14 +69,13 @@ def _score(name: str) -> str:
         else "cameras of the secret seed"
     )
     return (
-        f"## {name}, the score · {MAX_POINTS} points\n\n`{project.function}` runs in other worlds: {worlds}. What "
+        f"## {name}, the score · {SCORE_POINTS} points\n\n`{project.function}` runs in other worlds: {worlds}. What "
         f"counts is the median of: {project.title}.\n\n"
-        f"| the median is | points |\n|---|---|\n| {line.words} | {MAX_POINTS} |\n"
+        f"| the median is | points |\n|---|---|\n| {line.words} | {SCORE_POINTS} |\n"
         f"| better than the paper's method ({project.told(paper_value(project))} on the hidden seeds) "
-        f"| {MAX_POINTS // 2} |\n"
-        f"| worse, but the function runs in every world | {MAX_POINTS // 4} |\n| else | 0 |\n\n"
-        "The notebook's own rubric, of 100 points, is for marking the whole project by hand: it counts the same stages "
-        "and the same score, and the written part, which no program reads.\n\n"
+        f"| {SCORE_POINTS // 2} |\n"
+        f"| worse, but the function runs in every world | {SCORE_POINTS // 4} |\n| else | 0 |\n\n"
+        f"The written part, which no program reads, has {BY_HAND} points: write them into `by_hand.csv` of the grades.\n\n"
         "**To talk about.** What did you change, what did it gain on your own seeds, and how would you know that it "
         "was not luck? Which idea did *not* help?"
     )

@@ -68,7 +68,9 @@ def attempts(library: Path, limits: Limits) -> dict[str, str]:
         submission.write_text("", encoding="utf-8")
         start = f"import sys; sys.path.insert(0, '/course'); exec({program!r})"
         command = [*walls(limits, library, submission), *bounds(limits), sys.executable, "-P", "-s", "-B", "-c", start]
-        ran = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300, stdin=subprocess.DEVNULL)
+        ran = subprocess.run(
+            command, capture_output=True, text=True, check=False, timeout=300, stdin=subprocess.DEVNULL
+        )
     found = dict(json.loads(line) for line in ran.stdout.splitlines())
     if list(found) != list(ATTEMPTS):
         raise SandboxError(f"the walls' test did not run to its end: {ran.stderr.strip()[-300:]}")

@@ -79,7 +79,9 @@ def collect(folder: Path, lessons: Iterable[str], roster: Roster | None = None) 
         student, guess = whose(relative, set(lessons), roster)
         why = refused(path)
         if not why and not student:
-            why = "does not say whose it is: name it as in alice_06.ipynb, or put it into a folder of the student's name"
+            why = (
+                "does not say whose it is: name it as in alice_06.ipynb, or put it into a folder of the student's name"
+            )
         if why:
             not_read.append(NotRead(student, shown(relative), why))
         else:
