@@ -11,6 +11,7 @@ import json
 import numpy as np
 
 MAX_DEPTH = 8  # rows within rows
+MAX_ROW = 100_000  # values in one list or tuple
 MAX_TEXT = 10_000  # characters
 MAX_ARRAY = 32 << 20  # bytes
 KINDS = "biufc"  # of NumPy's types: numbers and booleans
@@ -26,18 +27,22 @@ class AnswerFormatError(ValueError):
 
 def encode(value: object, depth: int = 0) -> object:
     """Return a value in the form that `json.dumps` takes."""
-    if value is None or type(value) in (bool, int, float) or (type(value) is str and len(value) <= MAX_TEXT):
+    if isinstance(value, float) and not isinstance(value, np.generic):
+        return float.__float__(value)
+    if value is None or type(value) is bool or (type(value) is str and len(value) <= MAX_TEXT):
         return value
+    if isinstance(value, int) and abs(int.__int__(value)) < 1 << 64:
+        return int.__int__(value)
     if value is ...:
         return {"ellipsis": True}
-    if isinstance(value, np.ndarray | np.generic | complex | float | int):
+    if isinstance(value, np.ndarray | np.generic | complex):
         array = np.asarray(value)
         if array.dtype.kind in KINDS and array.nbytes <= MAX_ARRAY:
             buffer = io.BytesIO()
             np.save(buffer, array, allow_pickle=False)
             return {"array": base64.b64encode(buffer.getvalue()).decode(), "scalar": not isinstance(value, np.ndarray)}
     for row in (tuple, list):
-        if isinstance(value, row) and depth < MAX_DEPTH:
+        if isinstance(value, row) and depth < MAX_DEPTH and row.__len__(value) <= MAX_ROW:
             return {row.__name__: [encode(part, depth + 1) for part in row.__iter__(value)]}
     return {"kind": type(value).__name__[:60]}
 

@@ -137,7 +137,7 @@ def grade_folder(
     """
     roster = roster or Roster()
     stubs = function_names()
-    found, not_read = collect(folder, {_lesson(number) for number in stubs}, roster)
+    found, not_read = collect(folder, {one.name: one.path.stem for one in read_assignments()}, roster)
     tried, machine = [], ""
     if not trust:
         require_walls()

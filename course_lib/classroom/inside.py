@@ -72,6 +72,8 @@ def main(path: str, call_seconds: float, seconds: float) -> None:
             orders.close()
             try:
                 answer(results, statements, *order, call_seconds)
+            except BaseException as error:
+                send(results, {"problems": [f"the answer's process: {type(error).__name__}: {error}"[:MAX_SENTENCE]]})
             finally:
                 os._exit(0)
         send(results, {"end": wait(child, seconds)})
@@ -174,7 +176,7 @@ def answer(
             if call.failure.startswith(("does not end", "stops with MemoryError")):
                 return  # the other inputs would cost as much again
         else:
-            send(results, message | {"value": encode(call.value), "changed": not same_values(given, kept)})
+            send(results, message | {"value": encode(call.value), "changed": "." in number and not same_values(given, kept)})
 
 
 def run(statements: list[Statement], seconds: float) -> tuple[dict, list[str]]:

@@ -31,7 +31,9 @@ def model_answers(assignment: Assignment) -> dict[str, str]:
     stubs = {one.number: one.stub for one in assignment.exercises()} | {assignment.name: assignment.submission()}
     found = {}
     for number, stub in stubs.items():
-        chosen = [one.node for one in needed(statements, function_name(stub))]
+        name = function_name(stub)
+        chosen = [one.node for one in needed(statements, name)]
+        chosen.sort(key=lambda node: getattr(node, "name", "") == name)  # last, as a cell is named by its last function
         if not chosen:
             raise AssignmentError(f"the model solution has no function {function_name(stub)}()")
         found[number] = "\n\n\n".join(ast.get_source_segment(source, node) for node in chosen)

@@ -172,8 +172,8 @@ class Sandbox:
             while "end" not in (message := self._line()):
                 if "call" in message:
                     calls.append(message)
-                elif not head:
-                    head = message
+                else:
+                    head = message | {"problems": [*head.get("problems", []), *message.get("problems", [])]}
             return Run(head, calls, one_line(message["end"]))
         except (OSError, AnswerFormatError) as error:
             self._ended = self._ended or one_line(error)

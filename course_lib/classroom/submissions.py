@@ -13,7 +13,7 @@ import os
 import re
 import stat
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -64,8 +64,8 @@ class Roster:
         return next((self.keys[key] for name in names if (key := plain(name)) in self.keys), "")
 
 
-def collect(folder: Path, lessons: Iterable[str], roster: Roster | None = None) -> tuple[list, list]:
-    """Return the submissions in a folder and what is not read. lessons: names such as "06" and "P1".
+def collect(folder: Path, lessons: dict[str, str], roster: Roster | None = None) -> tuple[list, list]:
+    """Return the submissions in a folder and what is not read. lessons: "06" -> "06_likelihood_and_weights".
 
     Raises `SubmissionError` if there is no folder or nothing in it.
     """
@@ -76,7 +76,7 @@ def collect(folder: Path, lessons: Iterable[str], roster: Roster | None = None) 
     found, not_read = [], []
     for path in files_in(folder):
         relative = path.relative_to(folder)
-        student, guess = whose(relative, set(lessons), roster)
+        student, guess = whose(relative, lessons, roster)
         why = refused(path)
         if not why and not student:
             why = (
@@ -113,7 +113,7 @@ def refused(path: Path) -> str:
     return "" if path.suffix.lower() in READ else "is neither a notebook (.ipynb) nor a Python file (.py)"
 
 
-def whose(relative: Path, lessons: set[str], roster: Roster) -> tuple[str, str]:
+def whose(relative: Path, lessons: dict[str, str], roster: Roster) -> tuple[str, str]:
     """Return the student and the lesson that a file's place and name tell; "" for what they do not tell."""
     stem = shown(relative.name.removesuffix(relative.suffix))
     folders = [shown(part) for part in relative.parts[:-1]]
@@ -131,11 +131,12 @@ def whose(relative: Path, lessons: set[str], roster: Roster) -> tuple[str, str]:
     return roster.find(*names, *folders[:1]) or names[-1], guesses[0] if guesses else ""
 
 
-def _without_lesson(stem: str, lessons: set[str]) -> str:
+def _without_lesson(stem: str, lessons: dict[str, str]) -> str:
     """Return a file's name without the lesson's: "alice_06_likelihood_and_weights" is alice's."""
     parts = re.split(r"[ _.-]+", stem)
     place = next((k for k, part in enumerate(parts) if part.upper() in lessons), len(parts))
-    kept = parts[:place] or parts[place + 1 :]
+    title = lessons[parts[place].upper()].split("_") if place < len(parts) else []
+    kept = parts[:place] or [part for part in parts[place + 1 :] if part.lower() not in title]
     return VERSION.sub("", "_".join(kept)).strip(" _-")
 
 
