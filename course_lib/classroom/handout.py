@@ -42,7 +42,6 @@ NOT_FOR_STUDENTS = (
     "tools",
     "course_lib/classroom",
     "notebooks",
-    "data/projects/rooms_hidden.json",
     "TEACHING.md",
 )
 NOT_FOR_STUDENTS += (".ci", "CONTRIBUTING.md", "course_lib/commands/grade.py", "course_lib/commands/handout.py")

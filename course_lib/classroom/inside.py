@@ -176,7 +176,10 @@ def answer(
             if call.failure.startswith(("does not end", "stops with MemoryError")):
                 return  # the other inputs would cost as much again
         else:
-            send(results, message | {"value": encode(call.value), "changed": "." in number and not same_values(given, kept)})
+            send(
+                results,
+                message | {"value": encode(call.value), "changed": "." in number and not same_values(given, kept)},
+            )
 
 
 def run(statements: list[Statement], seconds: float) -> tuple[dict, list[str]]:

@@ -49,7 +49,15 @@ def run(arguments: argparse.Namespace) -> int:
     limits = Limits(arguments.call_seconds, arguments.seconds, arguments.memory)
     started, bar = time.monotonic(), progress_bar("grading", "file")
     results = grade_folder(
-        arguments.folder, out, seed, limits, arguments.jobs or cpu_count(), arguments.trust, arguments.scores, roster, bar
+        arguments.folder,
+        out,
+        seed,
+        limits,
+        arguments.jobs or cpu_count(),
+        arguments.trust,
+        arguments.scores,
+        roster,
+        bar,
     )
     names = write_results(results, out)
     print(summary(results, time.monotonic() - started))
@@ -85,5 +93,7 @@ def summary(results, seconds: float) -> str:
     lines += [f"not read: {one.name}: {one.why}" for one in results.not_read[:20]]
     if missing := [name for name in results.roster.rows if name not in handed_in]:
         lines.append(f"nothing from {len(missing)} of the class: {', '.join(missing[:20])}")
-    walls = f"{len(results.walls)} ways through the walls tried, all failed" if results.walls else "WITHOUT WALLS (--trust)"
+    walls = (
+        f"{len(results.walls)} ways through the walls tried, all failed" if results.walls else "WITHOUT WALLS (--trust)"
+    )
     return "\n".join([*lines, f"{walls}. Seed: {results.seed}"])

