@@ -2,7 +2,7 @@
 
 Several lessons share `kit/`. `predictions` asks for predictions and prints them again beside the results. `exercises`
 checks answers, and `projects` scores projects. `student_record` keeps predictions and results, `lesson_progress` counts
-them, and `progress_page` shows the counts. `display` shows a figure and `scene` a 3D scene. `panel`, `live_figure` and
+them, and `show_progress` shows the counts. `display` shows a figure and `scene` a 3D scene. `panel`, `live_figure` and
 `progress_bar` are the moving parts. `intervals` prints medians and shares with their intervals. `room_photographs`,
 `panorama_features`, `room_observations` and `corridor_views` load the data of several lessons. The methods are not
 here but in `course_lib.depth_mcl` and `course_lib.spherical_stereo`. Figures and scene objects that commands draw too
@@ -19,8 +19,8 @@ A new lesson NN needs a notebook and a folder:
   which the notebook hands to `show`. The alternative text is not in the cells, because it may give answers away.
   A scene starts with `plots.scenes.new_plotter`. The notebook's own cell adds the objects (`plots.scenes`,
   `kit.scene_objects`, PyVista) and shows them with `show_scene(plotter, "NN_name", title=..., alt=...)`.
-  `panel.py`: `PANELS = {title: function that makes the panel}`. A panel's figure is a `LiveFigure`. Its `draw` is a
-  plain function that takes the controls' values and returns a `Drawing`.
+  There or in `panel.py`: `PANELS = {title: function that makes the panel}`. A panel's figure is a `LiveFigure`. Its
+  `draw` is a plain function that takes the controls' values and returns a `Drawing`.
   `exercises.py`: `EXERCISES`, each with a solution, an input generator, and mistakes as edits of it with hints.
   Code that these files share (scenes, data, measurements) has its own modules, named after their contents.
 

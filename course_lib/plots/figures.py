@@ -79,3 +79,19 @@ def depth_images(
 def colour_bar(figure: Figure, image: AxesImage, axes: Axes | np.ndarray, label: str = "depth Z [m]") -> None:
     """The colour bar that goes with `depth_image`."""
     figure.colorbar(image, ax=axes, label=label, shrink=0.85)
+
+
+BESIDE = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "frameon": False}
+"""Arguments of `axes.legend` that put the legend to the right of the axes."""
+
+
+def curves_figure(
+    x: np.ndarray, curves: dict[str, np.ndarray], size: tuple[float, float], markevery: float, **labels
+) -> tuple[Figure, Axes]:
+    """Draw named curves over x, with the legend beside the axes; labels: arguments of `axes.set`."""
+    figure, axes = new_figure(size=size)
+    for index, (name, values) in enumerate(curves.items()):
+        axes.plot(x, values, **(line_style(index) | {"markevery": markevery}), label=name)
+    axes.set(**labels)
+    axes.legend(**BESIDE)
+    return figure, axes

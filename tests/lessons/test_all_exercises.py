@@ -11,7 +11,7 @@ import pytest
 from course_lib.lessons.kit.attempt import attempt
 from course_lib.lessons.kit.exercises import fault, find_exercise, judge, lesson_exercises, lesson_numbers
 from course_lib.lessons.kit.general_mistakes import LIMIT, argument_slips, code_slips, value_slips
-from course_lib.lessons.kit.values import agree_all
+from course_lib.lessons.kit.values import agree_all, parts
 
 EXERCISES = [exercise for number in lesson_numbers() for exercise in lesson_exercises(number)]
 every_exercise = pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)
@@ -64,6 +64,28 @@ def test_no_general_slip_passes(exercise):
             agree_all(answers, answers_of(right, inputs), exercise.tolerance)
             for right in (exercise.solution, *exercise.others)
         )
+
+
+FORMS = {
+    "lists": lambda values: values.tolist() if values.size else values,
+    "tuples": lambda values: tuple(values.tolist()) if values.ndim and values.size else values,
+    "single precision": lambda values: values.astype(np.float32),
+    "arrays of one number": lambda values: np.atleast_1d(values),
+}
+
+
+@pytest.mark.parametrize("form", FORMS)
+@every_exercise
+def test_the_right_values_pass_in_another_form(exercise, form):
+    """So right_answers/ needs no variants of this kind. Exercises with `verify` have theirs there."""
+    if exercise.verify is not None:
+        pytest.skip("this exercise has many right answers")
+    inputs = exercise.draw(np.random.default_rng(0))
+    answers = []
+    for right in answers_of(exercise.solution, inputs):
+        changed = [FORMS[form](np.asarray(part)) for part in parts(right)]
+        answers.append(changed if isinstance(right, tuple) else changed[0])
+    assert fault(exercise, inputs, answers) is None
 
 
 @pytest.mark.parametrize(("number", "answer"), RIGHT_ANSWERS, ids=lambda given: given if isinstance(given, str) else "")

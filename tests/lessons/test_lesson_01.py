@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.lesson_01.panel import drive_panel
-from course_lib.lessons.lesson_01.poses import turn_per_degree
+from course_lib.lessons.lesson_01 import drive_panel, turn_per_degree
 
 
 @pytest.mark.parametrize("pitch_deg", [0, 18, 60, 85, -45])

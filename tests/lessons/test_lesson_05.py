@@ -16,11 +16,6 @@ def test_a_yaw_that_the_oracle_does_not_judge_does_a_random_walk():
     assert np.std(wrap_angle(np.array(ends) - wagon_states()[0, 5])) == pytest.approx(5 * 0.03, rel=0.35)
 
 
-def test_the_least_sigma_of_05_5_keeps_up_in_just_that_share_of_runs():
-    steps = min_sigma(0.1, 50, 30, 0.8) * np.random.default_rng(1).standard_normal((4000, 30, 50))
-    assert np.mean(steps.max(axis=2).min(axis=1) >= 0.1) == pytest.approx(0.8, abs=0.02)
-
-
 def simulated(step, n, frames, p):
     farthest = norm.ppf(np.random.default_rng(0).random((1000, frames)) ** (1 / n))
     return step / np.quantile(farthest.min(axis=1), 1 - p)
@@ -28,5 +23,4 @@ def simulated(step, n, frames, p):
 
 @pytest.mark.parametrize("answer", [simulated, lambda *given: round(min_sigma(*given), 3)])
 def test_an_answer_to_05_5_that_is_rounded_or_simulated_is_told_so(answer):
-    message = judge(find_exercise("05.5"), answer).message
-    assert "simulated" in message or "Rounded" in message
+    assert "simulated" in judge(find_exercise("05.5"), answer).message

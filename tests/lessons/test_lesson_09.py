@@ -4,26 +4,13 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from course_lib.beyond import AnnealedLocalizer
-from course_lib.depth_mcl import DepthRenderer
-from course_lib.geometry import optical_pose
-from course_lib.lessons.kit.corridor_views import corridor_map
 from course_lib.lessons.lesson_09.panel import descend
-from course_lib.lessons.lesson_09.runs import cloud_density, hand_run, localize, slide
+from course_lib.lessons.lesson_09.runs import cloud_density, slide
 
 
 def test_the_nearest_particle_is_as_far_as_its_distribution_says():
     nearest = cloud_density(200, 6, np.random.default_rng(3))[2]
     assert nearest == pytest.approx(np.sqrt(chi2.ppf(1 - 0.5 ** (1 / 200), 6)), rel=0.03)
-
-
-def test_a_track_holds_the_errors_of_its_estimates():
-    with DepthRenderer(corridor_map(), hand_run().camera()) as renderer:
-        track = localize(AnnealedLocalizer(renderer, 60, seed=10_001), [40, 44], "test")
-    for k, estimate in enumerate(track.estimates):
-        off = optical_pose(estimate.state)[:3, 3] - hand_run().camera_to_world[40 + 4 * k, :3, 3]
-        assert (track.position[k], *track.deviations[k, :3]) == pytest.approx((np.linalg.norm(off), *-off))
-        assert np.rad2deg(np.linalg.norm(track.deviations[k, 3:])) == pytest.approx(track.rotation[k])
 
 
 def test_in_a_bare_corridor_the_error_stays_within_a_sigma_that_is_wide_along_the_axis_only():

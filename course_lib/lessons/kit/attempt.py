@@ -1,8 +1,7 @@
 """Call a student's function once and return its value, or a sentence that says how the call failed.
 
-The function may raise an error, call `exit()`, run forever or print forever. The notebook survives all of these. The
-time limit works on every operating system and stops all Python code in the kernel's own thread. It cannot interrupt a
-single call into a compiled library, so we wait until that call ends.
+The function may raise an error, call `exit()`, run forever or print forever. The time limit works on every operating
+system. It cannot interrupt a single call into a compiled library, so we wait until that call ends.
 """
 
 import contextlib
@@ -11,17 +10,13 @@ import io
 import threading
 import traceback
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
-TIME_LIMIT = 20.0
-"""Time limit of one call [s]. Right answers take milliseconds, even on a slow and busy machine."""
-
-MAX_CHARACTERS = 20_000
-"""Upper limit on the characters that one call may print."""
+TIME_LIMIT = 20.0  # of one call [s]; right answers take milliseconds, even on a slow and busy machine
+MAX_CHARACTERS = 20_000  # that one call may print
 
 
-@dataclass(frozen=True)
-class Attempt:
+class Attempt(NamedTuple):
     """The result of one call: its `value`, or a sentence in `failure`. `printed` holds the printed text."""
 
     value: object = None
@@ -38,8 +33,6 @@ class _PrintLimitExceeded(BaseException):
 
 
 class _LimitedOutput(io.StringIO):
-    """Keeps the printed text and stops a function that prints too much."""
-
     def write(self, text: str) -> int:
         if self.tell() + len(text) > MAX_CHARACTERS:
             raise _PrintLimitExceeded
@@ -70,14 +63,15 @@ def attempt(function: Callable, arguments: tuple, seconds: float = TIME_LIMIT) -
 @contextlib.contextmanager
 def _time_limit(seconds: float):
     """Raise `_TimeLimitExceeded` in this thread after so many seconds, then every second until the code stops."""
-    thread, lock, ended = threading.get_ident(), threading.Lock(), threading.Event()
+    thread, lock, ended = ctypes.c_ulong(threading.get_ident()), threading.Lock(), threading.Event()
+    raise_in = ctypes.pythonapi.PyThreadState_SetAsyncExc
 
     def watch() -> None:
         wait = seconds
         while not ended.wait(wait):
             with lock:  # after the end, the exception would hit the code that runs next
                 if not ended.is_set():
-                    _raise_in(thread, _TimeLimitExceeded)
+                    raise_in(thread, ctypes.py_object(_TimeLimitExceeded))
             wait = 1.0
 
     watcher = threading.Thread(target=watch, daemon=True)
@@ -87,13 +81,8 @@ def _time_limit(seconds: float):
     finally:
         with lock:
             ended.set()
-            _raise_in(thread, None)  # cancel an exception that was raised but has not arrived
+            raise_in(thread, None)  # cancel an exception that was raised but has not arrived
         watcher.join()
-
-
-def _raise_in(thread: int, error: type[BaseException] | None) -> None:
-    asynchronous = ctypes.py_object(error) if error is not None else None
-    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), asynchronous)
 
 
 def _describe_error(error: BaseException, function: Callable) -> str:

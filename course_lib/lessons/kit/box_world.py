@@ -16,20 +16,20 @@ from course_lib.simulation.sensors.ray_casting import Hits
 
 def box_map(*boxes: tuple[tuple, tuple]) -> SceneMap:
     """Return a map of boxes. Each box is a pair of opposite corners (x, y, z) [m]."""
-    meshes = [trimesh.creation.box(bounds=np.array(corners, dtype=float)) for corners in boxes]
-    mesh = trimesh.util.concatenate(meshes)
+    mesh = trimesh.util.concatenate([trimesh.creation.box(bounds=np.array(corners, dtype=float)) for corners in boxes])
     return SceneMap(mesh.vertices, mesh.faces)
 
 
 class Box(NamedTuple):
-    """One box along the axes."""
+    """One box along the axes: opposite corners [m] and a reflectivity.
+
+    Each coordinate of `high` is larger than that of `low`. reflectivity [-]: 0 to 1 for a surface that scatters light
+    evenly, above 1 for retroreflective tape.
+    """
 
     low: tuple[float, float, float]
-    """corner (x, y, z) [m]"""
     high: tuple[float, float, float]
-    """opposite corner (x, y, z) [m]; each coordinate is larger"""
     reflectivity: float
-    """[-], 0 to 1 for a surface that scatters light evenly, above 1 for retroreflective tape"""
 
 
 class BoxWorld:
@@ -40,9 +40,8 @@ class BoxWorld:
 
     def __init__(self, boxes: Sequence[Box]) -> None:
         self.boxes = tuple(boxes)
-        self.low = np.array([box.low for box in self.boxes], dtype=np.float64)
-        self.high = np.array([box.high for box in self.boxes], dtype=np.float64)
-        if not len(self.boxes) or (self.high <= self.low).any():
+        self.low, self.high = (np.array([box[k] for box in self.boxes], dtype=np.float64) for k in (0, 1))
+        if not self.boxes or (self.high <= self.low).any():
             raise ValueError("a box world needs boxes, and every coordinate of a box's `high` must be above its `low`")
         self.reflectivity = np.array([box.reflectivity for box in self.boxes], dtype=np.float64)
 
@@ -63,16 +62,14 @@ class BoxWorld:
         distance = np.full(shape, np.inf, np.float32)
         face, entered = np.full(shape, -1, np.int32), np.zeros(shape, np.int8)
         for number, (low, high) in enumerate(zip(self.low, self.high, strict=True)):
-            enters, leaves, axis = None, None, None
+            enters, leaves = np.full(shape, -np.inf, np.float32), np.full(shape, np.inf, np.float32)
+            axis = np.zeros(shape, np.int8)
             for k in range(3):
                 with np.errstate(invalid="ignore"):
                     a, b = (np.float32(low[k]) - o[k]) * inverse[k], (np.float32(high[k]) - o[k]) * inverse[k]
-                first, last = np.minimum(a, b), np.maximum(a, b)
-                if enters is None:
-                    enters, leaves, axis = first, last, np.zeros(shape, np.int8)
-                else:
-                    axis[first > enters] = k
-                    enters, leaves = np.maximum(enters, first), np.minimum(leaves, last)
+                first = np.minimum(a, b)
+                axis[first > enters] = k
+                enters, leaves = np.maximum(enters, first), np.minimum(leaves, np.maximum(a, b))
             hit = (enters <= leaves) & (enters > 0) & (enters < distance)
             distance[hit], face[hit], entered[hit] = enters[hit], number, axis[hit]
         length = np.sqrt(d[0] ** 2 + d[1] ** 2 + d[2] ** 2)

@@ -1,4 +1,4 @@
-"""Figures and pictures in few bytes, as a notebook stores them."""
+"""Figures and pictures `(H, W, 3)` uint8 in few bytes, as a notebook stores them."""
 
 import io
 
@@ -6,35 +6,45 @@ import numpy as np
 from matplotlib.figure import Figure
 from PIL import Image
 
-_COLOURS_IN_PNG = 128  # smooth enough for a colour bar, a third of the bytes of full colour
-_WEBP_QUALITY = 85  # lines and letters of a figure stay clean; two thirds of the bytes of JPEG (chosen)
-
 
 def png_bytes(figure: Figure) -> bytes:
-    """The figure as PNG with a palette of 128 colours: a third of the size of full colour."""
-    figure.canvas.draw()
-    return compress(np.asarray(figure.canvas.buffer_rgba())[..., :3])
+    """Return the figure as PNG with a palette of 128 colours: a third of the bytes of full colour."""
+    return compress(_pixels(figure))
 
 
 def webp_bytes(figure: Figure) -> bytes:
-    """The figure as WebP, for one that is mostly a photograph: all its colours, in fewer bytes than a palette PNG."""
-    figure.canvas.draw()
-    return compress_photograph(np.asarray(figure.canvas.buffer_rgba())[..., :3])
+    """Return the figure as WebP. A photograph keeps all its colours, in fewer bytes than a palette PNG."""
+    return compress_photograph(_pixels(figure))
 
 
 def compress(rgb: np.ndarray) -> bytes:
-    """Picture `(H, W, 3)` uint8 as a palette PNG."""
+    """Return a picture as PNG with a palette of 128 colours, which is smooth enough for a colour bar."""
     # Maximum coverage keeps the colour of a thin line, which the usual median cut gives up for one more shade of blue.
     picture = Image.fromarray(np.ascontiguousarray(rgb))
-    reduced = picture.quantize(_COLOURS_IN_PNG, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
-    buffer = io.BytesIO()
-    reduced.save(buffer, format="PNG", optimize=True)
-    return buffer.getvalue()
+    return _encoded(picture.quantize(128, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE), "PNG", optimize=True)
+
+
+def small_png(picture: Image.Image, width: int, max_bytes: int) -> bytes:
+    """Return a picture as PNG, `width` pixels wide or, if it has too many bytes, smaller. Raises `ValueError`."""
+    for wide in (width, width * 4 // 5, width * 3 // 5, width * 2 // 5):
+        size = (wide, round(wide * picture.height / picture.width))
+        png = compress(picture.resize(size, Image.Resampling.LANCZOS))
+        if len(png) <= max_bytes:
+            return png
+    raise ValueError(f"{len(png)} bytes at {wide} pixels; at most {max_bytes} fit")
 
 
 def compress_photograph(rgb: np.ndarray) -> bytes:
-    """Picture `(H, W, 3)` uint8 as WebP."""
+    """Return a picture as WebP. With this quality, the lines and letters of a figure stay clean."""
+    return _encoded(Image.fromarray(np.ascontiguousarray(rgb)), "WEBP", quality=85)
+
+
+def _pixels(figure: Figure) -> np.ndarray:
+    figure.canvas.draw()
+    return np.asarray(figure.canvas.buffer_rgba())[..., :3]
+
+
+def _encoded(picture: Image.Image, kind: str, **options) -> bytes:
     buffer = io.BytesIO()
-    picture = Image.fromarray(np.ascontiguousarray(rgb))
-    picture.save(buffer, format="WEBP", quality=_WEBP_QUALITY)
+    picture.save(buffer, kind, **options)
     return buffer.getvalue()

@@ -2,7 +2,6 @@
 
 import functools
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
@@ -24,13 +23,7 @@ def wagon_run() -> DepthSequence:
     return read_sequence(data_path("corridor/wagon"))
 
 
-@functools.cache
-def corridor_cut(axis: int, position: float) -> np.ndarray:
-    """Return the `plane_cut` of the corridor's map at `position` [m] along `axis`."""
-    return plane_cut(corridor_map().vertices, corridor_map().faces, axis, position)
-
-
 def draw_walls(axes: Axes, axis: int, position: float, label: str | None = None) -> None:
-    """Draw a `corridor_cut` as thin grey lines. The limits of the axes do not change."""
-    lines = LineCollection(corridor_cut(axis, position), colors="0.45", linewidths=1.0, label=label)
-    axes.add_collection(lines, autolim=False)
+    """Draw the cut through the map at `position` [m] along `axis` in grey. The limits of the axes do not change."""
+    cut = plane_cut(corridor_map().vertices, corridor_map().faces, axis, position)
+    axes.add_collection(LineCollection(cut, colors="0.45", linewidths=1.0, label=label), autolim=False)

@@ -39,12 +39,12 @@ def show(figure: Figure, alt: str = "", photograph: bool = False) -> None:
 
 def require_labels(figure: Figure) -> None:
     """Raise `FigureError` unless every axes has a title and labels with units in square brackets."""
-    shared = {"x": figure.get_supxlabel(), "y": figure.get_supylabel()}
     for axes in figure.axes:
-        labels = {"x": axes.get_xlabel() or shared["x"], "y": axes.get_ylabel() or shared["y"]}
+        x, y = axes.get_xlabel(), axes.get_ylabel()
+        labels = {"x": x or figure.get_supxlabel(), "y": y or figure.get_supylabel()}
         if axes.get_label() == "<colorbar>":
-            labels = {"colour bar": axes.get_xlabel() or axes.get_ylabel()}
-        elif not (any(axes.get_title(loc) for loc in ("left", "center", "right")) or figure.get_suptitle()):
+            labels = {"colour bar": x or y}
+        elif not (any(map(axes.get_title, ("left", "center", "right"))) or figure.get_suptitle()):
             raise FigureError("this figure has no title: set one with axes.set_title(...)")
         for name, label in labels.items():
             if not re.search(r"\[[^\]]+\]", label):

@@ -13,23 +13,20 @@ import importlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from course_lib.lessons.kit.attempt import TIME_LIMIT, attempt
 from course_lib.lessons.kit.hints import MISSING_RETURN, hint, kind_of, known_mistake
 from course_lib.lessons.kit.mistakes import Mistake, read_mistakes
-from course_lib.lessons.kit.progress_page import update_page
+from course_lib.lessons.kit.show_progress import update_page
 from course_lib.lessons.kit.student_record import record_check, record_folder
 from course_lib.lessons.kit.values import agree, agree_all
 
 # Random inputs per check. A case that one input in five has is missed in one of 200 checks only: 0.8^24 = 0.005.
 N_INPUTS = 24
-MAX_SHOWN = 1000
-"""Upper limit on the characters that we show of a function's printed text. Only the first call's text is shown."""
-
-Level = Literal["warm-up", "core", "challenge"]
+MAX_SHOWN = 1000  # characters of a function's printed text; only the first call's text is shown
 
 
 @dataclass(frozen=True)
@@ -39,18 +36,18 @@ class Exercise:
     number: such as "03.1". solution: the right function; the notebook's solution is made of its text. inputs: makes one
     tuple of arguments from a `numpy.random.Generator`. level: how hard it is. cases: like `inputs`, but each runs once
     in every check. They are special cases (a seam, a mirror image, empty input, equal values) with a name in words,
-    which a hint may tell: `{"one point": lambda rng: (np.zeros((1, 2)),)}`. mistakes: about nine edits of the solution with their hints (`kit.mistakes`).
-    functions: function -> hint, for mistakes that are no edit. tolerance: absolute and relative, as in
-    `numpy.allclose`. others: other functions that the task allows, for example another estimator. verify: for tasks
-    with many right answers. `verify(arguments, answer)` returns a sentence that says what is wrong, or None. It
-    replaces the comparison with the solution.
+    which a hint may tell: `{"one point": lambda rng: (np.zeros((1, 2)),)}`. mistakes: about nine edits of the solution
+    with their hints (`kit.mistakes`). functions: function -> hint, for mistakes that are no edit. tolerance: absolute
+    and relative, as in `numpy.allclose`. others: other functions that the task allows, for example another estimator.
+    verify: for tasks with many right answers. `verify(arguments, answer)` returns a sentence that says what is wrong,
+    or None. It replaces the comparison with the solution.
     """
 
     number: str
     solution: Callable
     inputs: Callable[[np.random.Generator], tuple]
-    level: Level = "core"
-    cases: dict[str, Callable[[np.random.Generator], tuple]] | Sequence[Callable] = field(default_factory=dict)
+    level: Literal["warm-up", "core", "challenge"] = "core"
+    cases: dict[str, Callable[[np.random.Generator], tuple]] = field(default_factory=dict)
     mistakes: str = ""
     functions: dict[Callable, str] = field(default_factory=dict)
     tolerance: float = 1e-6
@@ -59,25 +56,16 @@ class Exercise:
 
     def draw(self, rng: np.random.Generator) -> list[tuple]:
         """Return the arguments of every call of one check: the cases, then `N_INPUTS` random inputs."""
-        cases = self.cases.values() if isinstance(self.cases, dict) else self.cases
-        return [make(rng) for make in (*cases, *[self.inputs] * N_INPUTS)]
-
-    @property
-    def case_names(self) -> list[str]:
-        """Return the special cases in words: "one point" for `one_point`."""
-        if isinstance(self.cases, dict):
-            return list(self.cases)
-        return [make.__name__.strip("_").replace("_", " ") for make in self.cases]
+        return [make(rng) for make in (*self.cases.values(), *[self.inputs] * N_INPUTS)]
 
     @functools.cached_property
     def known(self) -> tuple[Mistake, ...]:
         """Return the exercise's own mistakes: its edits, then its functions."""
-        others = tuple(Mistake((function,), hint) for function, hint in self.functions.items())
-        return read_mistakes(self.solution, self.mistakes) + others
+        others = (Mistake((function,), hint) for function, hint in self.functions.items())
+        return (*read_mistakes(self.solution, self.mistakes), *others)
 
 
-@dataclass(frozen=True)
-class Verdict:
+class Verdict(NamedTuple):
     """The result of a check: its status, the message, and the text that the function `printed` in its first call."""
 
     status: Literal["not attempted", "right", "wrong"]
@@ -85,18 +73,17 @@ class Verdict:
     printed: str = ""
 
 
-class UnknownExerciseError(KeyError):
-    """No exercise has this number."""
+NOT_ATTEMPTED = Verdict("not attempted", "not attempted yet. Replace the `...` above, then run both cells.")
 
-    def __str__(self) -> str:
-        return str(self.args[0])
+
+class UnknownExerciseError(LookupError):
+    """No exercise has this number."""
 
 
 def check(number: str, function: Callable) -> None:
     """Print whether `function` solves exercise `number`: not attempted, right, or not yet with a hint."""
     verdict = judge(find_exercise(number), function)
-    if verdict.printed:
-        print(f"(your function prints) {verdict.printed[:MAX_SHOWN].rstrip()}")
+    show_printed(verdict.printed)
     print(f"{number}: {verdict.message}")
     if record_folder() is not None:
         try:
@@ -105,6 +92,12 @@ def check(number: str, function: Callable) -> None:
         except OSError as error:
             print(f"(not kept: {error})")
         update_page()
+
+
+def show_printed(text: str) -> None:
+    """Print the text that a student's function printed, if there is any."""
+    if text:
+        print(f"(your function prints) {text[:MAX_SHOWN].rstrip()}")
 
 
 def find_exercise(number: str) -> Exercise:
@@ -119,8 +112,8 @@ def find_exercise(number: str) -> Exercise:
 
 def lesson_numbers() -> list[str]:
     """Return the numbers ("03") of the lessons with exercises and the names ("P1") of the projects with stages."""
-    folders = [path.parent.name for path in Path(__file__).parents[1].glob("*_*/exercises.py")]
-    return sorted(name.removeprefix("lesson_").replace("project_", "P") for name in folders)
+    paths = Path(__file__).parents[1].glob("*_*/exercises.py")
+    return sorted(path.parent.name.removeprefix("lesson_").replace("project_", "P") for path in paths)
 
 
 def lesson_exercises(lesson: str) -> tuple[Exercise, ...]:
@@ -136,7 +129,7 @@ def judge(exercise: Exercise, function: Callable, seed: int = 0, seconds: float 
     if not callable(function):
         return _wrong(f"Give the function itself, without calling it; this is a {kind_of(function)}.")
     if is_stub(function):
-        return _not_attempted()
+        return NOT_ATTEMPTED
     arguments = exercise.draw(np.random.default_rng(seed))
     answers, printed = [], ""
     for index, given in enumerate(arguments):
@@ -145,7 +138,7 @@ def judge(exercise: Exercise, function: Callable, seed: int = 0, seconds: float 
         if call.failure is not None:
             return _wrong(f"Your function {call.failure}", printed)
         if call.value is ...:
-            return _not_attempted()
+            return NOT_ATTEMPTED
         if not same_values(used, given):
             return _wrong("Your function changes the array it was given: work on a new one.", printed)
         answers.append(call.value)
@@ -159,47 +152,28 @@ def right_on(exercise: Exercise, arguments: list[tuple], answers: list) -> list[
     All answers are compared with one function: the solution, or the function of `exercise.others` that agrees with
     more of them. An answer of None is wrong. The arguments are not changed.
     """
+    pairs = list(zip(arguments, answers, strict=True))
     if exercise.verify is not None:
-        return [
-            answer is not None and exercise.verify(copy.deepcopy(given), answer) is None
-            for given, answer in zip(arguments, answers, strict=True)
-        ]
-    return max(
-        (
-            [
-                agree(a, allowed(*copy.deepcopy(given)), exercise.tolerance)
-                for given, a in zip(arguments, answers, strict=True)
-            ]
-            for allowed in (exercise.solution, *exercise.others)
-        ),
-        key=sum,
-    )
+        return [a is not None and exercise.verify(copy.deepcopy(given), a) is None for given, a in pairs]
+    allowed = (exercise.solution, *exercise.others)
+    found = [[agree(a, f(*copy.deepcopy(given)), exercise.tolerance) for given, a in pairs] for f in allowed]
+    return max(found, key=sum)
 
 
 def fault(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
     """Return a sentence about a fault in the answers, or None. It shows neither inputs nor right values."""
-    return _verified(exercise, arguments, answers) if exercise.verify else _compared(exercise, arguments, answers)
-
-
-def _compared(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
-    """Return None if the answers agree with the solution or another allowed function, else a hint."""
-    wanted = [exercise.solution(*copy.deepcopy(given)) for given in arguments]
-    if agree_all(answers, wanted, exercise.tolerance):
+    if exercise.verify is not None:
+        for given, answer in zip(arguments, answers, strict=True):
+            if answer is None:
+                return MISSING_RETURN
+            if (sentence := exercise.verify(copy.deepcopy(given), answer)) is not None:
+                return known_mistake(exercise, arguments, answers) or sentence
         return None
-    for other in exercise.others:
-        if agree_all(answers, [other(*copy.deepcopy(given)) for given in arguments], exercise.tolerance):
+    for allowed in (exercise.solution, *exercise.others):
+        values = [allowed(*copy.deepcopy(given)) for given in arguments]
+        if agree_all(answers, values, exercise.tolerance):
             return None
-    return hint(exercise, arguments, answers, wanted)
-
-
-def _verified(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
-    """Return None if `verify` accepts all answers, else a known mistake's hint or the sentence of `verify`."""
-    for given, answer in zip(arguments, answers, strict=True):
-        if answer is None:
-            return MISSING_RETURN
-        if (sentence := exercise.verify(copy.deepcopy(given), answer)) is not None:
-            return known_mistake(exercise, arguments, answers) or sentence
-    return None
+    return hint(exercise, arguments, answers)
 
 
 def is_stub(function: Callable) -> bool:
@@ -220,7 +194,3 @@ def same_values(given: tuple, kept: tuple) -> bool:
 
 def _wrong(sentence: str, printed: str = "") -> Verdict:
     return Verdict("wrong", f"not yet. {sentence}", printed)
-
-
-def _not_attempted() -> Verdict:
-    return Verdict("not attempted", "not attempted yet. Replace the `...` above, then run both cells.")

@@ -2,8 +2,8 @@
 
 import dis
 import inspect
-import types
 from collections.abc import Callable, Iterator
+from types import CodeType, ModuleType
 
 
 def forbidden_module(function: Callable, forbidden: tuple[str, ...]) -> str | None:
@@ -14,7 +14,7 @@ def forbidden_module(function: Callable, forbidden: tuple[str, ...]) -> str | No
         if id(value) in seen:
             continue
         seen.add(id(value))
-        name = value.__name__ if isinstance(value, types.ModuleType) else getattr(value, "__module__", None) or ""
+        name = value.__name__ if isinstance(value, ModuleType) else getattr(value, "__module__", None) or ""
         for module in [name, *_imported(value)]:
             if found := next((one for one in forbidden if f"{module}.".startswith(f"{one}.")), None):
                 return found
@@ -23,28 +23,22 @@ def forbidden_module(function: Callable, forbidden: tuple[str, ...]) -> str | No
     return None
 
 
-def _codes(function: types.FunctionType) -> Iterator[types.CodeType]:
-    """Yield the code of a function and of the functions inside of it."""
-    waiting = [function.__code__]
-    while waiting:
-        code = waiting.pop()
-        yield code
-        waiting += [constant for constant in code.co_consts if isinstance(constant, types.CodeType)]
+def _codes(code: CodeType) -> Iterator[CodeType]:
+    """Yield a function's code and the code of the functions inside of it."""
+    yield code
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _codes(constant)
 
 
-def _imported(value: object) -> list[str]:
-    """Return the modules that a function imports: of `from a import b`, both a and a.b."""
-    if not inspect.isfunction(value):
-        return []
-    instructions = [one for code in _codes(value) for one in dis.get_instructions(code)]
-    named, module = [], ""
-    for one in instructions:
-        if one.opname == "IMPORT_NAME":
-            module = one.argval
-            named.append(module)
-        elif one.opname == "IMPORT_FROM":
-            named.append(f"{module}.{one.argval}")
-    return named
+def _imported(value: object) -> Iterator[str]:
+    """Yield the modules that a function imports. For `from a import b`, yield both a and a.b."""
+    for code in _codes(value.__code__) if inspect.isfunction(value) else ():
+        for one in dis.get_instructions(code):
+            if one.opname == "IMPORT_NAME":
+                yield (module := one.argval)
+            elif one.opname == "IMPORT_FROM":
+                yield f"{module}.{one.argval}"
 
 
 def _used(value: object) -> list:
@@ -53,8 +47,8 @@ def _used(value: object) -> list:
         return list(vars(value).values())
     if not inspect.isfunction(value):
         return []
-    names = {name for code in _codes(value) for name in code.co_names}
+    names = {name for code in _codes(value.__code__) for name in code.co_names}
     found = [value.__globals__[name] for name in names if name in value.__globals__]
     found += [cell.cell_contents for cell in value.__closure__ or ()]
-    modules = [one for one in found if isinstance(one, types.ModuleType)]
+    modules = [one for one in found if isinstance(one, ModuleType)]
     return found + [vars(module)[name] for module in modules for name in names if name in vars(module)]

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import ast
 import copy
+import functools
 import inspect
 import textwrap
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from itertools import accumulate
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -47,20 +49,10 @@ CLOSE = "Within 5 % everywhere, but not equal: is something simulated, rounded, 
 FACTOR = "Yours differs from the right values by one constant factor."
 OFFSET = "Yours differs from the right values by one constant summand."
 
-LIMIT = 0.2
-"""Time limit of one call of a slip [s]: a slip may make a loop endless. The right function takes milliseconds."""
+LIMIT = 0.2  # [s] of one call of a slip, which may make a loop endless; the right function takes milliseconds
 
-OF_VALUES = (
-    (SIGN, np.negative),
-    (DEGREES, np.rad2deg),
-    (DEGREES, np.deg2rad),
-    (SQUARED, np.square),
-    (SQUARED, np.sqrt),
-    (TRANSPOSED, np.transpose),
-    (ABSOLUTE, np.abs),
-)
-"""Slips of a returned value; those of `OF_ARGUMENTS` are of a given one."""
-OF_ARGUMENTS = (*OF_VALUES[:3], (TRANSPOSED, np.transpose))
+OF_ARGUMENTS = ((SIGN, np.negative), (DEGREES, np.rad2deg), (DEGREES, np.deg2rad), (TRANSPOSED, np.transpose))
+OF_VALUES = (*OF_ARGUMENTS[:3], (SQUARED, np.square), (SQUARED, np.sqrt), OF_ARGUMENTS[3], (ABSOLUTE, np.abs))
 
 
 def general_mistake(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
@@ -87,19 +79,16 @@ def value_slips(wanted: list) -> Iterator[tuple[str, Callable]]:
     n = len(parts(wanted[0]))
     for sentence, change in OF_VALUES:
         for which in [range(n), *([k] for k in range(n) if n > 1)]:
-            yield sentence, lambda value, change=change, which=which: _changed(value, change, which)
+            yield sentence, functools.partial(_changed, change, which)
     if np.asarray(parts(wanted[0])[0]).dtype.kind == "i":
         for step in (1, -1):
-            yield OFF_BY_ONE, lambda value, step=step: _changed(value, lambda part: part + step, range(n))
+            yield OFF_BY_ONE, functools.partial(_changed, functools.partial(np.add, step), range(n))
 
 
-def _changed(value: object, change: Callable, which: range | list[int]) -> object:
-    changed = tuple(change(_number(p)) if k in which else p for k, p in enumerate(parts(value)))
+def _changed(change: Callable, which: Sequence[int], value: object) -> object:
+    arrays = (np.asarray(part) * 1 for part in parts(value))  # numbers in place of truth values
+    changed = tuple(change(part) if k in which else part for k, part in enumerate(arrays))
     return changed if isinstance(value, tuple) else changed[0]
-
-
-def _number(value: object) -> object:
-    return np.asarray(value).astype(float) if np.asarray(value).dtype.kind == "b" else np.asarray(value)
 
 
 def argument_slips(solution: Callable, given: tuple) -> Iterator[tuple[str, Callable]]:
@@ -111,9 +100,7 @@ def argument_slips(solution: Callable, given: tuple) -> Iterator[tuple[str, Call
                 yield sentence, lambda *g, k=k, change=change: solution(*g[:k], change(g[k]), *g[k + 1 :])
         for j in numbers[:k]:
             if np.shape(given[j]) == np.shape(given[k]):
-                order = list(range(len(given)))
-                order[j], order[k] = k, j
-                yield EXCHANGED, lambda *g, order=order: solution(*(g[i] for i in order))
+                yield EXCHANGED, lambda *g, j=j, k=k: solution(*g[:j], g[k], *g[j + 1 : k], g[j], *g[k + 1 :])
 
 
 def code_slips(solution: Callable) -> Iterator[tuple[str, Callable]]:
@@ -121,32 +108,26 @@ def code_slips(solution: Callable) -> Iterator[tuple[str, Callable]]:
     source = textwrap.dedent(inspect.getsource(solution)) if inspect.isfunction(solution) else ""
     if not source.startswith("def "):  # a lambda, or compiled code
         return
+    code = source.encode()  # because `ast` counts bytes
+    lines = list(accumulate((len(line) + 1 for line in code.split(b"\n")), initial=0))
     places: dict[str, list] = {}
     for node in _expressions(ast.parse(source).body[0]):
-        start, end = (
-            _offset(source, node.lineno, node.col_offset),
-            _offset(source, node.end_lineno, node.end_col_offset),
-        )
+        start, end = lines[node.lineno - 1] + node.col_offset, lines[node.end_lineno - 1] + node.end_col_offset
         for sentence, new in _changes(node):
             places.setdefault(sentence, []).append((start, end, new))
     for sentence, found in places.items():
-        for chosen in [*([place] for place in found), _apart(found)]:
-            text = source
+        apart: list = []  # all places that do not overlap an earlier one
+        for place in sorted(found):
+            if not apart or place[0] >= apart[-1][1]:
+                apart.append(place)
+        for chosen in [*([place] for place in found), apart]:
+            text = code
             for start, end, new in reversed(chosen):
-                text = f"{text[:start]}({new}){text[end:]}"
+                text = text[:start] + f"({new})".encode() + text[end:]
             try:
-                yield sentence, compiled(solution, text)
+                yield sentence, compiled(solution, text.decode())
             except ValueError:  # such as a slip inside of an f-string
                 continue
-
-
-def _apart(places: list) -> list:
-    """Return the places that do not overlap an earlier one, in the order of the text."""
-    kept: list = []
-    for place in sorted(places):
-        if not kept or place[0] >= kept[-1][1]:
-            kept.append(place)
-    return kept
 
 
 def _expressions(node: ast.AST) -> Iterator[ast.expr]:
@@ -158,11 +139,6 @@ def _expressions(node: ast.AST) -> Iterator[ast.expr]:
             yield from _expressions(child)
 
 
-def _offset(source: str, line: int, column: int) -> int:
-    lines = source.split("\n")
-    return sum(len(one) + 1 for one in lines[: line - 1]) + len(lines[line - 1].encode()[:column].decode())
-
-
 SWAPPED = {
     "mean": ("median", MIDDLE), "median": ("mean", MIDDLE), "nanmean": ("nanmedian", MIDDLE),
     "nanmedian": ("nanmean", MIDDLE), "argmin": ("argmax", EXTREME), "argmax": ("argmin", EXTREME),
@@ -170,49 +146,24 @@ SWAPPED = {
 }  # fmt: skip
 DROPPED = {"abs": ABSOLUTE, "sqrt": SQUARED, "wrap_angle": WRAP, "clip": LIMITS, "deg2rad": DEGREES, "rad2deg": DEGREES}
 STRICT = {ast.Lt: "<=", ast.LtE: "<", ast.Gt: ">=", ast.GtE: ">"}
+OPERATORS = {
+    ast.Add: [(SIGN, "({a}) - ({b})")],
+    ast.Sub: [(SIGN, "({a}) + ({b})")],
+    ast.Mult: [(QUOTIENT, "({a}) / ({b})")],
+    ast.Div: [(QUOTIENT, "({a}) * ({b})")],
+    ast.Pow: [(SQUARED, "{a}")],
+    ast.MatMult: [(TRANSPOSED, "({a}).T @ ({b})"), (TRANSPOSED, "({a}) @ ({b}).T")],
+}
 
 
 def _changes(node: ast.AST) -> Iterator[tuple[str, str]]:
     """Yield (sentence, new code) for the slips that one expression allows."""
     match node:
-        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name), args=args, keywords=keywords):
-            listed = [ast.unparse(argument) for argument in args]
-            rest = [ast.unparse(keyword) for keyword in keywords]
-            called = ast.unparse(node.func)
-            if name in SWAPPED:
-                other, sentence = SWAPPED[name]
-                if other == "median" and not called.startswith("np."):  # arrays have no method of this name
-                    listed = [called.removesuffix(f".{name}"), *listed]
-                    called = "np.mean"
-                yield sentence, f"{called.removesuffix(name)}{other}({', '.join(listed + rest)})"
-            if name in DROPPED and listed:
-                yield DROPPED[name], listed[0]
-            if name == "arctan2":
-                yield ARCTAN2, f"{called}({listed[1]}, {listed[0]})"
-                yield HALF_CIRCLE, f"{called.removesuffix('2')}({listed[0]} / ({listed[1]}))"
-            if name == "std" or name == "var":
-                other = [word for word in rest if not word.startswith("ddof")]
-                yield DIVISOR, f"{called}({', '.join(listed + other + ([] if other != rest else ['ddof=1']))})"
-            if name == "range":
-                yield OFF_BY_ONE, f"range({', '.join(listed)})[1:]"
-                yield OFF_BY_ONE, f"range({', '.join(listed)})[:-1]"
-            if name == "len":
-                yield DIVISOR, f"({ast.unparse(node)} - 1)"
-            for index, keyword in enumerate(keywords):
-                if keyword.arg == "axis" and ast.unparse(keyword.value) in ("0", "1", "-1"):
-                    other = "1" if ast.unparse(keyword.value) == "0" else "0"
-                    yield AXIS, f"{called}({', '.join([*listed, *rest[:index], f'axis={other}', *rest[index + 1 :]])})"
+        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)):
+            yield from _changes_of_call(node, name)
         case ast.BinOp(left=left, op=op, right=right):
-            a, b = ast.unparse(left), ast.unparse(right)
-            if isinstance(op, ast.Add | ast.Sub):
-                yield SIGN, f"({a}) {'-' if isinstance(op, ast.Add) else '+'} ({b})"
-            elif isinstance(op, ast.Mult | ast.Div):
-                yield QUOTIENT, f"({a}) {'/' if isinstance(op, ast.Mult) else '*'} ({b})"
-            elif isinstance(op, ast.Pow):
-                yield SQUARED, a
-            elif isinstance(op, ast.MatMult):
-                yield TRANSPOSED, f"({a}).T @ ({b})"
-                yield TRANSPOSED, f"({a}) @ ({b}).T"
+            for sentence, new in OPERATORS.get(type(op), ()):
+                yield sentence, new.format(a=ast.unparse(left), b=ast.unparse(right))
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             yield SIGN, ast.unparse(operand)
         case ast.Attribute(value=value, attr="T", ctx=ast.Load()):
@@ -221,14 +172,43 @@ def _changes(node: ast.AST) -> Iterator[tuple[str, str]]:
             yield EQUAL, f"({ast.unparse(left)}) {STRICT[type(op)]} ({ast.unparse(right)})"
 
 
+def _changes_of_call(node: ast.Call, name: str) -> Iterator[tuple[str, str]]:
+    listed, rest, called = [*map(ast.unparse, node.args)], [*map(ast.unparse, node.keywords)], ast.unparse(node.func)
+    if name in SWAPPED:
+        other, sentence = SWAPPED[name]
+        if other == "median" and not called.startswith("np."):  # arrays have no method of this name
+            swapped, values = "np.median", [called.removesuffix(f".{name}"), *listed]
+        else:
+            swapped, values = f"{called.removesuffix(name)}{other}", listed
+        yield sentence, f"{swapped}({', '.join(values + rest)})"
+    if name in DROPPED and listed:
+        yield DROPPED[name], listed[0]
+    if name == "arctan2":
+        yield ARCTAN2, f"{called}({listed[1]}, {listed[0]})"
+        yield HALF_CIRCLE, f"{called.removesuffix('2')}({listed[0]} / ({listed[1]}))"
+    if name in ("std", "var"):
+        others = [word for word in rest if not word.startswith("ddof")]
+        yield DIVISOR, f"{called}({', '.join(listed + others + ([] if others != rest else ['ddof=1']))})"
+    if name == "range":
+        yield OFF_BY_ONE, f"range({', '.join(listed)})[1:]"
+        yield OFF_BY_ONE, f"range({', '.join(listed)})[:-1]"
+    if name == "len":
+        yield DIVISOR, f"({ast.unparse(node)} - 1)"
+    for index, axis in enumerate(rest):
+        if axis in ("axis=0", "axis=1", "axis=-1"):
+            other = "axis=1" if axis == "axis=0" else "axis=0"
+            yield AXIS, f"{called}({', '.join([*listed, *rest[:index], other, *rest[index + 1 :]])})"
+
+
 def constant_difference(answers: list, wanted: list, tolerance: float) -> str | None:
     """Return a sentence if all answers are nearly right, or differ by the same factor or summand; else None."""
-    if isinstance(wanted[0], tuple) and not all(is_row_of(len(wanted[0]), answer) for answer in answers):
+    several = isinstance(wanted[0], tuple)
+    if several and not all(is_row_of(len(wanted[0]), answer) for answer in answers):
         return None
     pairs = [
         (as_numbers(a), np.asarray(w, dtype=float))
         for answer, right in zip(answers, wanted, strict=True)
-        for a, w in zip(answer if isinstance(right, tuple) else (answer,), parts(right), strict=True)
+        for a, w in zip(answer if several else (answer,), parts(right), strict=True)
     ]
     if any(a is None or a.shape != w.shape for a, w in pairs):
         return None
@@ -237,7 +217,7 @@ def constant_difference(answers: list, wanted: list, tolerance: float) -> str | 
             return sentence
     a, w = (np.concatenate([np.ravel(pair[k]) for pair in pairs]) for k in (0, 1))
     telling = np.isfinite(a) & np.isfinite(w) & (w != 0)
-    if isinstance(wanted[0], tuple) or np.count_nonzero(telling) < 3:
+    if several or np.count_nonzero(telling) < 3:
         return None
     factor, summand = np.median(a[telling] / w[telling]), np.median(a[telling] - w[telling])
     for sentence, right in ((FACTOR, w * factor), (OFFSET, w + summand)):
@@ -247,5 +227,4 @@ def constant_difference(answers: list, wanted: list, tolerance: float) -> str | 
 
 
 def _size(values: np.ndarray) -> float:
-    finite = np.abs(values[np.isfinite(values)])
-    return float(finite.max()) if finite.size else 0.0
+    return np.abs(values[np.isfinite(values)]).max(initial=0.0)

@@ -2,29 +2,32 @@
 
 from __future__ import annotations
 
+import copy
 import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from course_lib.lessons.kit.general_mistakes import general_mistake, gives
-from course_lib.lessons.kit.values import agree, as_numbers, is_row_of, parts, shaped
+from course_lib.lessons.kit.values import agree, agree_all, as_numbers, is_row_of, parts, shaped
 
 if TYPE_CHECKING:  # because `exercises` imports this module
     from course_lib.lessons.kit.exercises import Exercise
 
-
 MISSING_RETURN = "Your function returns None: does every way through it end in `return`?"
 
 
-def hint(exercise: Exercise, arguments: list[tuple], answers: list, wanted: list) -> str:
+def hint(exercise: Exercise, arguments: list[tuple], answers: list) -> str:
     """Return the hint for wrong answers to a list of inputs. It shows neither the inputs nor the right values."""
     if any(answer is None for answer in answers):
         return MISSING_RETURN
     if (sentence := known_mistake(exercise, arguments, answers)) is not None:
         return sentence
-    if _only_reordered(answers, wanted, exercise.tolerance):
-        return "The values are right, but in another order than the task names them."
+    wanted = [exercise.solution(*copy.deepcopy(given)) for given in arguments]
+    if isinstance(wanted[0], tuple):
+        for order in itertools.permutations(range(len(wanted[0]))):
+            if agree_all(answers, [tuple(right[k] for k in order) for right in wanted], exercise.tolerance):
+                return "The values are right, but in another order than the task names them."
     if (sentence := general_mistake(exercise, arguments, answers)) is not None:
         return sentence
     inf_is_an_answer = any(np.isinf(np.asarray(w, dtype=np.float64)).any() for right in wanted for w in parts(right))
@@ -32,9 +35,16 @@ def hint(exercise: Exercise, arguments: list[tuple], answers: list, wanted: list
         if (sentence := _difference(answer, right, inf_is_an_answer)) is not None:
             return sentence
     right = [agree(a, w, exercise.tolerance) for a, w in zip(answers, wanted, strict=True)]
+    names = list(exercise.cases)  # of the first inputs
     if not any(right):
         return "Shape and type fit, but the values differ on every input. Work one small case by hand and compare."
-    return _left_out(right, exercise.case_names)
+    if all(right[len(names) :]):
+        missed = [name for name, is_right in zip(names, right, strict=False) if not is_right]
+        return f"Right on all ordinary inputs, wrong on a special case: {', '.join(missed)}."
+    return (
+        f"Right on {sum(right)} of {len(right)} inputs, wrong on {len(right) - sum(right)}: which case is left out? "
+        "Try small inputs of your own: equal values, zeros, both signs, the ends of the range."
+    )
 
 
 def known_mistake(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
@@ -45,27 +55,6 @@ def known_mistake(exercise: Exercise, arguments: list[tuple], answers: list) -> 
             if all(gives(function, given, answer, exercise.tolerance) for given, answer in pairs):
                 return mistake.hint
     return None
-
-
-def _left_out(right: list[bool], names: list[str]) -> str:
-    """Return a sentence about answers that are right on some inputs. The special cases, which have names, are first."""
-    if all(right[len(names) :]):
-        missed = [name for name, is_right in zip(names, right, strict=False) if not is_right]
-        return f"Right on all ordinary inputs, wrong on a special case: {', '.join(missed)}."
-    return (
-        f"Right on {sum(right)} of {len(right)} inputs, wrong on {len(right) - sum(right)}: which case is left out? "
-        "Try small inputs of your own: equal values, zeros, both signs, the ends of the range."
-    )
-
-
-def _only_reordered(answers: list, wanted: list, tolerance: float) -> bool:
-    """Return whether all answers hold the right values in the same wrong order."""
-    if not isinstance(wanted[0], tuple) or not all(is_row_of(len(wanted[0]), answer) for answer in answers):
-        return False
-    return any(
-        all(agree(a, tuple(w[k] for k in order), tolerance) for a, w in zip(answers, wanted, strict=True))
-        for order in itertools.permutations(range(len(wanted[0])))
-    )
 
 
 def _difference(answer: object, right: object, inf_is_an_answer: bool) -> str | None:
@@ -79,18 +68,17 @@ def _difference(answer: object, right: object, inf_is_an_answer: bool) -> str | 
             return f"Return numbers; yours returns a {kind_of(a)}."
         if values.shape != np.shape(r):
             return f"The result must have shape {np.shape(r)}; yours has {values.shape}."
-        if (np.isinf(r) & np.isnan(values)).any() and not (np.isfinite(r) & np.isnan(values)).any():
+        nan, inf, wanted_inf = np.isnan(values), np.isinf(values), np.isinf(r)
+        if (wanted_inf & nan).any() and (np.isnan(r).any() or not (np.isfinite(r) & nan).any()):
             return "Yours is nan where inf is expected."
-        if np.isnan(values).any() and not np.isnan(r).any():
+        if nan.any() and not np.isnan(r).any():
             return "There is a NaN in your result: look for 0/0, inf - inf or the logarithm of a negative number."
-        if inf_is_an_answer and (np.isinf(values) & ~np.isinf(r)).any():
-            return "Yours is inf where a finite number is expected."
-        if inf_is_an_answer and (np.isinf(r) & np.isnan(values)).any():
-            return "Yours is NaN where inf is expected."
-        if inf_is_an_answer and (np.isinf(r) & ~np.isinf(values)).any():
-            return "Yours is a finite number where inf is expected."
-        if np.isinf(values).any() and not inf_is_an_answer:
+        if inf.any() and not inf_is_an_answer:
             return "There is an infinity in your result: look for a division by zero."
+        if (inf & ~wanted_inf).any():
+            return "Yours is inf where a finite number is expected."
+        if (wanted_inf & ~inf).any():
+            return "Yours is a finite number where inf is expected."
     return None
 
 

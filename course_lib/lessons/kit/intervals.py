@@ -4,8 +4,7 @@ import numpy as np
 
 from course_lib.experiments.intervals import wilson_percent
 
-DRAWS = 2000
-SEED = 1  # fixed, so that the same values always print the same interval
+DRAWS, SEED = 2000, 1  # a fixed seed, so that the same values always print the same interval
 
 
 def bootstrap_median(values: np.ndarray) -> tuple[float, float]:
@@ -18,8 +17,7 @@ def bootstrap_median(values: np.ndarray) -> tuple[float, float]:
     if len(values) < 2:
         raise ValueError(f"an interval needs at least two values; got {len(values)}")
     medians = np.median(np.random.default_rng(SEED).choice(values, (DRAWS, len(values))), axis=1)
-    low, high = np.percentile(medians, (2.5, 97.5))
-    return float(low), float(high)
+    return tuple(np.percentile(medians, (2.5, 97.5)).tolist())
 
 
 def median_text(values: np.ndarray, digits: int = 3, unit: str = "m") -> str:

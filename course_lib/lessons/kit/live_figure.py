@@ -21,8 +21,7 @@ class LiveFigure:
         for artist in moving:
             artist.set_animated(True)
         figure.canvas.draw()
-        # Constrained layout has placed everything, so another pass would only cost time.
-        figure.set_layout_engine("none")
+        figure.set_layout_engine("none")  # it has placed everything, so another pass would only cost time
         figure.canvas.draw()
         self._frame = figure.canvas.copy_from_bbox(figure.bbox)
 
@@ -31,7 +30,7 @@ class LiveFigure:
         canvas = self.figure.canvas
         canvas.restore_region(self._frame)
         for artist in self.moving:
-            self.figure.draw_artist(artist) if artist.axes is None else artist.axes.draw_artist(artist)
+            (artist.axes or self.figure).draw_artist(artist)
         rgb = np.asarray(canvas.buffer_rgba())[..., :3]
         ok, encoded = cv2.imencode(".png", rgb[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 1])
         if not ok:

@@ -13,13 +13,12 @@ Several edits above one hint are several ways to make the same mistake.
 import inspect
 import textwrap
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 ARROW, JOINED, WHOLE_BODY = " =>", " and also ", "..."
 
 
-@dataclass(frozen=True)
-class Mistake:
+class Mistake(NamedTuple):
     """A common mistake: each of `functions` makes it in its own way, and `hint` says what to look at."""
 
     functions: tuple[Callable, ...]
@@ -59,13 +58,11 @@ def edited_text(solution: Callable, edit: str) -> str:
     for part in edit.split(JOINED):
         old, _, new = (piece.strip() for piece in part.partition(ARROW))
         if old == WHOLE_BODY:
-            source = f"{signature(source)}\n    {new}"
-        elif old not in source:
-            raise EditError(
-                f"{solution.__name__} does not contain {old!r}, so this edit changes nothing: {edit.strip()}"
-            )
-        else:
+            source = f"{source[: source.index('):') + 2]}\n    {new}"
+        elif old in source:
             source = source.replace(old, new)
+        else:
+            raise EditError(f"{solution.__name__} does not contain {old!r}, so this edit changes nothing: {edit}")
     return source
 
 
@@ -79,8 +76,3 @@ def compiled(solution: Callable, source: str) -> Callable:
     function = names[solution.__name__]
     names[solution.__name__] = solution
     return function
-
-
-def signature(source: str) -> str:
-    """Return the line `def name(arguments):` of a function's source."""
-    return source[: source.index("):") + 2]

@@ -12,25 +12,19 @@ from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_view
 
-EXPERIMENT, PLACE = 2, "09_a"  # a chair stands before another, and a table lies across the seam
-
 
 class Side(NamedTuple):
-    """One panorama: its picture, its objects and its features."""
+    """One panorama `(H, W, 3)` uint8 BGR, its objects with exact boxes, their rows in the map, and its features."""
 
     image: np.ndarray
-    """`(H, W, 3)` uint8 BGR."""
     objects: list[Detection]
-    """The detections, with exact boxes."""
     numbers: list[int]
-    """Row of each object in the map."""
     features: PanoramaFeatures
 
     def view(self, objects: Sequence[Detection] | None = None) -> View:
         """Return the panorama in the library's form. objects: detections that replace its own."""
-        return open_view(self.image).replace(
-            detections=self.objects if objects is None else objects, features=self.features
-        )
+        chosen = self.objects if objects is None else objects
+        return open_view(self.image).replace(detections=chosen, features=self.features)
 
 
 class Scene(NamedTuple):
@@ -42,9 +36,12 @@ class Scene(NamedTuple):
 
 
 @functools.lru_cache(maxsize=8)
-def scene(name: str = PLACE) -> Scene:
-    """Return one place of the room with its features. The first call takes half a second."""
-    recording = room_recording(EXPERIMENT)
+def scene(name: str = "09_a") -> Scene:
+    """Return one place of the room with its features. The first call takes half a second.
+
+    In 09_a, a chair stands before another, and a table lies across the seam.
+    """
+    recording = room_recording(2)
     pair = pair_of(recording, name)
     views = [
         Side(image, *exact_detections(things, image), detect_features(image))

@@ -10,11 +10,12 @@ import html
 import ipywidgets as widgets
 from IPython.display import display
 
-from course_lib.lessons.kit.progress_page import update_page
+from course_lib.lessons.kit.panel import VIEW
+from course_lib.lessons.kit.show_progress import update_page
 from course_lib.lessons.kit.student_record import RecordError, read_record, record_folder, record_prediction
 
-_ASKED: dict[str, tuple[str, ...]] = {}
-"""Lesson -> the questions that this kernel has shown. `recall` repeats them."""
+_ASKED: dict[str, tuple[str, ...]] = {}  # lesson -> the questions that this kernel has shown; `recall` repeats them
+FORGOTTEN = "Noted, but not kept: `python3 course.py lab` keeps predictions in the folder work/."
 
 
 class Predictions:
@@ -30,8 +31,9 @@ class Predictions:
         self.lesson, self.questions = lesson, questions
         kept, said = _kept(lesson)
         self.boxes = [self._box(number, question, kept) for number, question in enumerate(questions, start=1)]
-        self._state = widgets.HTML(f'<p role="status">{html.escape(said)}</p>')
+        self._state = widgets.HTML()
         self._state.add_class("course-numbers")  # the lab's extension reads this class's text aloud
+        self._say(said)
         self.view = widgets.VBox([*self.boxes, self._state])
 
     def _box(self, number: int, question: str, kept: dict[str, str]) -> widgets.Textarea:
@@ -45,10 +47,10 @@ class Predictions:
             layout=widgets.Layout(width="98%", max_width="56em", flex_flow="column"),
             style={"description_width": "auto"},
         )
-        box.observe(lambda change: self.keep(number, change["new"]), names="value")
+        box.observe(lambda change: self._keep(number, change["new"]), names="value")
         return box
 
-    def keep(self, number: int, text: str) -> None:
+    def _keep(self, number: int, text: str) -> None:
         """Keep the prediction for one question, and say so under the boxes."""
         try:
             said = FORGOTTEN
@@ -57,20 +59,19 @@ class Predictions:
         except OSError as error:
             said = f"Prediction {number} could not be kept: {error}"
         update_page()
-        self._state.value = f'<p role="status">{html.escape(said)}</p>'
+        self._say(said)
+
+    def _say(self, text: str) -> None:
+        self._state.value = f'<p role="status">{html.escape(text)}</p>'
 
     def _repr_mimebundle_(self, include=None, exclude=None) -> dict:
-        view = self.view._repr_mimebundle_().get("application/vnd.jupyter.widget-view+json")
         rows = "".join(f"<li>{html.escape(question)}</li>" for question in self.questions)
         still = f"<p>Your predictions (run this cell to type them in):</p><ol>{rows}</ol>"
-        bundle = {"text/plain": repr(self), "text/html": still}
-        return bundle if view is None else bundle | {"application/vnd.jupyter.widget-view+json": view}
+        views = {kind: view for kind, view in self.view._repr_mimebundle_().items() if kind == VIEW}
+        return {"text/plain": repr(self), "text/html": still, **views}
 
     def __repr__(self) -> str:
         return f"Predictions of lesson {self.lesson}: {len(self.questions)} questions"
-
-
-FORGOTTEN = "Noted, but not kept: `python3 course.py lab` keeps predictions in the folder work/."
 
 
 def predict(lesson: str, *questions: str) -> None:
@@ -85,7 +86,7 @@ def recall(lesson: str, *measured: str) -> None:
     If the cell with `predict` did not run, only the questions' numbers are known. Raises `ValueError` if the number of
     answers differs from the number of questions.
     """
-    questions = _ASKED.get(lesson, tuple(f"Prediction {number}" for number in range(1, len(measured) + 1)))
+    questions = _ASKED.get(lesson, [f"Prediction {number}" for number, _ in enumerate(measured, start=1)])
     if len(questions) != len(measured):
         raise ValueError(
             f"recall({lesson!r}, ...) got {len(measured)} measured answers for {len(questions)} predictions: give one "

@@ -29,7 +29,7 @@ import numpy as np
 from course_lib.experiments.intervals import median_interval
 from course_lib.experiments.results import write_results
 from course_lib.lessons.kit.attempt import Attempt, attempt
-from course_lib.lessons.kit.exercises import MAX_SHOWN, is_stub
+from course_lib.lessons.kit.exercises import is_stub, show_printed
 from course_lib.lessons.kit.forbidden import forbidden_module
 from course_lib.lessons.kit.hints import kind_of
 from course_lib.lessons.kit.progress_bar import progress
@@ -54,15 +54,11 @@ class AnswerError(ValueError):
     """An answer that cannot be measured. Its text completes "Your function ...", such as "returns 3 states, not 40"."""
 
 
-class UnknownProjectError(KeyError):
+class UnknownProjectError(LookupError):
     """No project has this name."""
 
-    def __str__(self) -> str:
-        return str(self.args[0])
 
-
-@dataclass(frozen=True)
-class Rival:
+class Rival(NamedTuple):
     """A method that we compare with the student's. It runs on the same seeds and by the same rules."""
 
     key: Literal["paper", "ours", "none", "other"]
@@ -105,7 +101,7 @@ class Project:
 
     def told(self, value: float) -> str:
         """Return a value as text, with its unit."""
-        return f"{value:.{self.digits}f} {self.unit}".rstrip() if np.isfinite(value) else "failed"
+        return f"{value:.{self.digits}f} {self.unit}".rstrip()
 
 
 class Outcome(NamedTuple):
@@ -120,8 +116,7 @@ class Outcome(NamedTuple):
 
 def find_project(name: str) -> Project:
     """Return the project of this name. Raises `UnknownProjectError`, which lists all names."""
-    names = project_names()
-    if name not in names:
+    if name not in (names := project_names()):
         raise UnknownProjectError(f"there is no project {name!r}; there are {', '.join(names)}")
     return importlib.import_module(f"course_lib.lessons.project_{name[1:]}.project").PROJECT
 
@@ -136,6 +131,7 @@ def score(name: str, function: Callable, seeds: Sequence[int] | None = None, riv
     """Print the score of `function` in project `name`, on the hidden seeds or on `seeds` that you choose.
 
     The rivals' results on the hidden seeds are stored. On your seeds the rivals run too, unless `rivals` is False.
+    Raises `ValueError` if there is no seed, or one is negative or hidden.
     """
     project = find_project(name)
     if not callable(function):
@@ -145,24 +141,19 @@ def score(name: str, function: Callable, seeds: Sequence[int] | None = None, riv
     elif (module := forbidden_module(function, project.forbidden)) is not None:
         print(f"{name}: your function uses {module}, which this project asks you to write yourself.")
     elif seeds is None:
-        report(project, outcomes(project, function, project.seeds), stored_rivals(project), hidden=True)
+        names = [f"hidden seed {number}" for number, _ in enumerate(project.seeds, start=1)]
+        report(project, names, outcomes(project, function, project.seeds), dict(stored_rivals(project).values()))
     else:
-        seeds = own_seeds(project, seeds)
+        seeds = [int(seed) for seed in np.atleast_1d(seeds)]
+        if not seeds or min(seeds) < 0:
+            raise ValueError(f"seeds must be one or more whole numbers, each 0 or larger; got {seeds!r}")
+        if set(seeds) & set(project.seeds):
+            raise ValueError("one of these seeds is hidden: choose other seeds for development, such as 10001")
         others = {
-            rival.key: (rival.name, [outcome.value for outcome in outcomes(project, rival.function, seeds, rival.name)])
+            rival.name: [outcome.value for outcome in outcomes(project, rival.function, seeds, rival.name)]
             for rival in (project.rivals if rivals else ())
         }
-        report(project, outcomes(project, function, seeds), others, seeds=seeds)
-
-
-def own_seeds(project: Project, seeds: Sequence[int]) -> list[int]:
-    """Return the seeds for development. Raises `ValueError` if there is none, or one is negative or hidden."""
-    numbers = [int(seed) for seed in np.atleast_1d(seeds)]
-    if not numbers or min(numbers) < 0:
-        raise ValueError(f"seeds must be one or more whole numbers, each 0 or larger; got {seeds!r}")
-    if set(numbers) & set(project.seeds):
-        raise ValueError("one of these seeds is hidden: choose other seeds for development, such as 10001")
-    return numbers
+        report(project, [f"seed {seed}" for seed in seeds], outcomes(project, function, seeds), others)
 
 
 def outcomes(project: Project, function: Callable, seeds: Sequence[int], who: str = "your function") -> list[Outcome]:
@@ -180,7 +171,7 @@ def one_outcome(project: Project, function: Callable, seed: int) -> Outcome:
     """Run a function on one seed and return the outcome, even if the function fails."""
     task = project.prepare(seed)
     started = time.monotonic()
-    trial = answered(project, function, task)
+    trial = _answered(project, function, task)
     if trial.failure is not None:
         late = time.monotonic() - started >= project.seconds
         return Outcome(project.worst, f"Your function {trial.failure}", True, late, trial.printed)
@@ -195,67 +186,50 @@ def one_outcome(project: Project, function: Callable, seed: int) -> Outcome:
     return Outcome(float(result.value), result.remark, printed=trial.printed)
 
 
-def answered(project: Project, function: Callable, task: Task) -> Attempt:
+def _answered(project: Project, function: Callable, task: Task) -> Attempt:
     """Return a function's answer to a task. If the project asks for many calls, it is the list of their answers."""
     if not project.many:
         return attempt(function, task.arguments, project.seconds)
-    answers, printed = [], ""
-    for index, arguments in enumerate(task.arguments):
-        trial = attempt(function, arguments, project.seconds)
-        printed = printed if index else trial.printed
-        if trial.failure is not None:
-            return trial
-        answers.append(trial.value)
-    return Attempt(answers, None, printed)
+    trials: list[Attempt] = []
+    for arguments in task.arguments:
+        trials.append(attempt(function, arguments, project.seconds))
+        if trials[-1].failure is not None:
+            return trials[-1]
+    return Attempt([trial.value for trial in trials], None, trials[0].printed)
 
 
-def report(
-    project: Project,
-    found: Sequence[Outcome],
-    others: dict[str, tuple[str, list[float]]],
-    hidden: bool = False,
-    seeds: Sequence[int] = (),
-) -> None:
+def report(project: Project, names: Sequence[str], found: Sequence[Outcome], others: dict[str, list[float]]) -> None:
     """Print a line for each seed, the median with its interval, the rivals' medians, and the next rival to beat.
 
-    The text that the function itself printed on the first seed comes first.
+    names: of the seeds. others: name of a rival -> its value for each seed. The text that the function itself printed
+    on the first seed comes first.
     """
-    if found[0].printed:
-        print(f"(your function prints) {found[0].printed[:MAX_SHOWN].rstrip()}")
+    show_printed(found[0].printed)
     print(f"{project.name}: {project.title}; {project.better} is better")
-    names = [f"hidden seed {i + 1}" for i in range(len(found))] if hidden else [f"seed {seed}" for seed in seeds]
     for name, outcome in zip(names, found, strict=True):
-        if outcome.failed:
-            print(f"{name}: {outcome.remark}")
-        else:
-            print(f"{name}: {project.told(outcome.value)}" + (f" ({outcome.remark})" if outcome.remark else ""))
+        remark = f" ({outcome.remark})" if outcome.remark else ""
+        print(f"{name}: {outcome.remark if outcome.failed else project.told(outcome.value) + remark}")
     values = [outcome.value for outcome in found]
-    width = max(len(name) for name in ["yours", *(name for name, _ in others.values())])
-    print(f"{'yours':<{width}}  {told_median(project, values)}")
-    for name, theirs in others.values():
-        print(f"{name:<{width}}  {told_median(project, theirs)}; {told_wins(project, values, theirs)}")
+    width = max(map(len, ["yours", *others]))
+    print(f"{'yours':<{width}}  {_median(project, values)}")
+    for name, theirs in others.items():
+        wins = sum(is_better(project, mine, other) for mine, other in zip(values, theirs, strict=True))
+        print(f"{name:<{width}}  {_median(project, theirs)}; yours is better on {wins} of {len(theirs)}")
     if others:
-        print(to_beat(project, values, others))
+        print(_to_beat(project, float(np.median(values)), {name: np.median(theirs) for name, theirs in others.items()}))
 
 
-def told_median(project: Project, values: Sequence[float]) -> str:
+def _median(project: Project, values: Sequence[float]) -> str:
     """Return the median over the seeds in words, with its 95 % interval if no seed failed and there are enough."""
-    failed = sum(not np.isfinite(value) for value in values)
-    lost = f", {failed} of {len(values)} failed" if failed else ""
-    middle = float(np.median(values))
+    failed, middle = sum(not np.isfinite(value) for value in values), float(np.median(values))
     if not np.isfinite(middle):
         return f"no median: {failed} of {len(values)} seeds failed"
-    interval = median_interval(values) if not failed else {"low": None, "high": None}
+    interval = {"low": None} if failed else median_interval(values)
     if interval["low"] is None:
+        lost = f", {failed} of {len(values)} failed" if failed else ""
         return f"median {project.told(middle)} over {len(values)} seed{'s' * (len(values) > 1)}{lost}"
     low, high = (f"{interval[end]:.{project.digits}f}" for end in ("low", "high"))
     return f"median {project.told(middle)} (95 % interval {low} to {high} over {len(values)} seeds)"
-
-
-def told_wins(project: Project, values: Sequence[float], theirs: Sequence[float]) -> str:
-    """Return a phrase that says on how many seeds the student's function is better."""
-    wins = sum(is_better(project, mine, other) for mine, other in zip(values, theirs, strict=True))
-    return f"yours is better on {wins} of {len(theirs)}"
 
 
 def is_better(project: Project, value: float, other: float) -> bool:
@@ -263,20 +237,15 @@ def is_better(project: Project, value: float, other: float) -> bool:
     return value < other if project.better == "lower" else value > other
 
 
-def to_beat(project: Project, values: Sequence[float], others: dict[str, tuple[str, list[float]]]) -> str:
-    """Return a sentence that says what the student can beat next."""
-    mine = float(np.median(values))
+def _to_beat(project: Project, mine: float, others: dict[str, float]) -> str:
+    """Return a sentence that says what the student can beat next. mine, others: medians."""
     if not np.isfinite(mine):
         return "To beat: get it to run on every seed first."
-    ahead = [
-        (float(np.median(theirs)), name)
-        for name, theirs in others.values()
-        if not is_better(project, mine, np.median(theirs))
-    ]
+    ahead = {name: abs(theirs - mine) for name, theirs in others.items() if not is_better(project, mine, theirs)}
     if not ahead:
         return "You beat all of them. To beat: your own number; it can always be better."
-    best, name = min(ahead, key=lambda pair: abs(pair[0] - mine))
-    return f"To beat next: {name}, which is ahead of yours by {project.told(abs(best - mine))}."
+    nearest = min(ahead, key=ahead.get)
+    return f"To beat next: {nearest}, which is ahead of yours by {project.told(ahead[nearest])}."
 
 
 # The rivals' results on the hidden seeds are computed once and stored. A test computes them again and compares.

@@ -8,8 +8,6 @@ from course_lib.paths import data_path
 from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
-SEAM_PAIR = 9  # of the room's experiment 1: a sofa lies across the seam
-
 
 @functools.cache
 def room_map() -> SemanticMap:
@@ -25,14 +23,12 @@ def room_recording(experiment: int) -> StereoRecording:
 
 def pair_of(recording: StereoRecording, name: str) -> StereoPair:
     """Return the pair of this name, such as "09_a". Raises `KeyError` if there is none."""
-    pairs = {pair.name: pair for pair in recording.pairs}
-    return pairs[name]
+    return {pair.name: pair for pair in recording.pairs}[name]
 
 
-@functools.cache
 def the_pair() -> StereoPair:
-    """Return the pair of panoramas that lessons 11 and 12 show."""
-    return room_recording(1).pairs[SEAM_PAIR]
+    """Return the pair of panoramas that lessons 11 and 12 show. A sofa lies across its seam."""
+    return room_recording(1).pairs[9]
 
 
 @functools.cache

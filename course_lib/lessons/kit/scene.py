@@ -1,7 +1,7 @@
 """Show a 3D scene as a page that the reader can turn, and as a picture for browsers without scripts.
 
-The lesson's own page is `notebooks/scenes/NAME.html`. Only `tools.refresh` writes it. A student who changes the cell
-gets another page, `scenes/yours/NAME.html`, which git ignores.
+The lesson's own page is `notebooks/scenes/NAME.html`. Only `tools.refresh` writes it. A student who changes the cell,
+or whose processor rounds otherwise, gets another page, `scenes/yours/NAME.html`, which git ignores.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import html
 import os
 import re
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,9 +17,8 @@ from IPython.display import display
 from PIL import Image
 
 from course_lib.files import atomic_write
-from course_lib.lessons.kit.compression import compress
+from course_lib.lessons.kit.compression import small_png
 from course_lib.lessons.kit.display import Picture
-from course_lib.lessons.kit.same_scene import same_scene
 from course_lib.paths import STORE_SCENES
 from course_lib.plots.scene_page import ScenePageError, page_html
 from course_lib.plots.scenes import SceneError
@@ -26,45 +26,38 @@ from course_lib.plots.scenes import SceneError
 if TYPE_CHECKING:
     import pyvista
 
-HEIGHT = 500  # pixels of the frame
 MAX_PICTURE_BYTES = 60_000
-_WIDTHS = (800, 640, 480, 320)  # of the picture; the first that is small enough in bytes is used
 
 
+@dataclass(frozen=True)
 class Scene:
-    """A page in a frame, and below it a folded picture of the same scene.
+    """A page in a frame, and below it a folded picture of the same scene. If there is no page, only the picture.
 
-    source: path of the page, relative to the notebook's folder. height: of the frame [pixels].
+    source: path of the page, relative to the notebook's folder. height: of the frame [pixels]. no_page: why there is
+    no page.
     """
 
-    def __init__(self, source: str, title: str, height: int = HEIGHT, picture: Picture | None = None) -> None:
-        self.source, self.title, self.height, self.picture = source, title, height, picture
+    source: str
+    title: str
+    height: int = 500
+    picture: Picture | None = None
+    no_page: str = ""
 
     def html(self) -> str:
+        if self.no_page:
+            return f"{self.picture.html()}<p>This scene cannot be turned here: {html.escape(self.no_page)}</p>"
         frame = (
             f'<iframe src="{self.source}" title="{html.escape(self.title)}" width="100%" height="{self.height}"'
             ' style="border: 0"></iframe>'
         )
-        if self.picture is None:
-            return frame
-        return f"{frame}<details><summary>The same as a picture</summary>{self.picture.html()}</details>"
+        folded = "<details><summary>The same as a picture</summary>{}</details>"
+        return frame + (folded.format(self.picture.html()) if self.picture else "")
 
     def _repr_mimebundle_(self, include=None, exclude=None) -> dict:
         return {"text/plain": repr(self), "text/html": self.html()}
 
     def __repr__(self) -> str:
         return f"Scene: {self.title}"
-
-
-class PictureOfAScene(Scene):
-    """The picture of a scene whose page cannot be written, with the reason."""
-
-    def __init__(self, title: str, picture: Picture, reason: str) -> None:
-        super().__init__("", title, picture=picture)
-        self.reason = reason
-
-    def html(self) -> str:
-        return f"{self.picture.html()}<p>This scene cannot be turned here: {html.escape(self.reason)}</p>"
 
 
 def show_scene(plotter: pyvista.Plotter, name: str, title: str, alt: str) -> None:
@@ -80,35 +73,25 @@ def show_scene(plotter: pyvista.Plotter, name: str, title: str, alt: str) -> Non
         picture = Picture(small_picture(plotter), alt)
         display(Scene(_page_path(page_html(plotter, title, alt), name), title, picture=picture))
     except (ScenePageError, OSError) as reason:
-        display(PictureOfAScene(title, picture, str(reason)))
+        display(Scene("", title, picture=picture, no_page=str(reason)))
     finally:
         plotter.close()
 
 
 def small_picture(plotter: pyvista.Plotter) -> bytes:
-    """Return the scene's first view as a PNG of at most 60 kB. Raises `SceneError` if it is empty or too large."""
+    """Return the scene's first view as a PNG of at most 60 kB. Raises `SceneError` if it is empty."""
     if not plotter.actors:
         raise SceneError("the scene is empty: add something with plotter.add_mesh(...)")
-    picture = Image.fromarray(plotter.screenshot(return_img=True))
-    for width in _WIDTHS:
-        size = (width, round(width * picture.height / picture.width))
-        png = compress(picture.resize(size, Image.Resampling.LANCZOS))
-        if len(png) <= MAX_PICTURE_BYTES:
-            return png
-    raise SceneError(f"the scene's picture has {len(png)} bytes at {size[0]} pixels; at most {MAX_PICTURE_BYTES} fit")
+    return small_png(Image.fromarray(plotter.screenshot(return_img=True)), 800, MAX_PICTURE_BYTES)
 
 
 def _page_path(page: str, name: str) -> str:
     """Return the page's path, relative to the notebook's folder. Write the page if it is new or has changed."""
-    stored = Path("scenes") / f"{name}.html"
-    if os.environ.get(STORE_SCENES):
-        return _write(stored, page)
-    if stored.is_file() and same_scene(page, stored.read_text(encoding="utf-8")):
-        return stored.as_posix()
-    return _write(stored.parent / "yours" / stored.name, page)
-
-
-def _write(path: Path, page: str) -> str:
+    path = Path("scenes") / f"{name}.html"
+    if not os.environ.get(STORE_SCENES):
+        if path.is_file() and path.read_text(encoding="utf-8") == page:
+            return path.as_posix()
+        path = path.parent / "yours" / path.name
     path.parent.mkdir(parents=True, exist_ok=True)
     atomic_write(path, page)
     return path.as_posix()

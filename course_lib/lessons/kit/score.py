@@ -17,6 +17,8 @@ import nbformat
 
 from course_lib.lessons.kit.projects import Project, UnknownProjectError, find_project, score, store_rivals
 
+DEFINING = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.ClassDef, ast.Assign, ast.AnnAssign)
+
 
 def main(words: list[str]) -> int:
     """Score a file or store the rivals' results. Return the exit code; 2 is an error that the user can correct."""
@@ -30,10 +32,10 @@ def main(words: list[str]) -> int:
         project = find_project(arguments.project)
         if arguments.store:
             print(store_rivals(project))
-            return 0
-        if arguments.file is None:
+        elif arguments.file is None:
             raise ValueError(f"name the file to score; it defines {project.function}()")
-        score(project.name, handed_in(project, arguments.file), arguments.seeds)
+        else:
+            score(project.name, handed_in(project, arguments.file), arguments.seeds)
     except (UnknownProjectError, ValueError, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
@@ -46,7 +48,7 @@ def handed_in(project: Project, path: Path) -> Callable:
         raise ValueError(f"{path} is neither a Python file nor a notebook")
     names: dict = {"__name__": "handed_in", "__file__": str(path)}
     try:
-        for text in [path.read_text(encoding="utf-8")] if path.suffix == ".py" else definitions(path):
+        for text in [path.read_text(encoding="utf-8")] if path.suffix == ".py" else _definitions(path):
             exec(compile(text, str(path), "exec"), names)
     except (Exception, SystemExit) as error:
         raise ValueError(f"{path} does not run: {type(error).__name__}: {error}") from error
@@ -55,10 +57,7 @@ def handed_in(project: Project, path: Path) -> Callable:
     return names[project.function]
 
 
-DEFINING = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.ClassDef, ast.Assign, ast.AnnAssign)
-
-
-def definitions(path: Path) -> list[ast.Module]:
+def _definitions(path: Path) -> list[ast.Module]:
     """Return the imports, definitions and assignments of each code cell of a notebook, without IPython's commands."""
     cells = []
     for cell in nbformat.read(path, as_version=4).cells:

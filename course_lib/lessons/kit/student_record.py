@@ -7,6 +7,7 @@ Each lesson has one file, such as `06.json`, in the folder that the environment 
 import itertools
 import json
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 from course_lib.files import atomic_write
@@ -36,11 +37,12 @@ def read_record(lesson: str) -> dict:
         found = json.loads(path.read_text(encoding="utf-8"))
         predictions, checks = found["predictions"], found["checks"]
         texts = [*predictions.values(), *(entry["status"] for entry in checks.values())]
-        counts = [entry["attempts"] for entry in checks.values()]
+        if not all(isinstance(text, str) for text in texts):
+            raise TypeError("a text is missing")
+        if not all(isinstance(entry["attempts"], int) for entry in checks.values()):
+            raise TypeError("a count is missing")
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise RecordError(f"{path} is not a valid record of lesson {lesson} ({error!r}): move it away") from error
-    if not all(isinstance(text, str) for text in texts) or not all(isinstance(count, int) for count in counts):
-        raise RecordError(f"{path} is not a valid record of lesson {lesson}: move it away")
     if found.get("lesson", lesson) != lesson:
         raise RecordError(f"{path} is the record of lesson {found['lesson']}, not of {lesson}: move it away")
     return {"predictions": predictions, "checks": checks}
@@ -48,10 +50,7 @@ def read_record(lesson: str) -> dict:
 
 def record_prediction(lesson: str, index: int, text: str) -> str:
     """Keep the prediction for question `index` (1, 2, ...). Return a sentence if a damaged record was set aside."""
-    record, said = _record_to_change(lesson)
-    record["predictions"][str(index)] = text
-    _write(lesson, record)
-    return said
+    return _change(lesson, lambda record: record["predictions"].update({str(index): text}))
 
 
 def record_check(number: str, status: str) -> str:
@@ -59,33 +58,30 @@ def record_check(number: str, status: str) -> str:
 
     Return a sentence if a damaged record was set aside, else "".
     """
-    lesson = number.partition(".")[0]
-    record, said = _record_to_change(lesson)
-    entry = record["checks"].setdefault(number, {"status": status, "attempts": 0})
-    entry["attempts"] += status != "not attempted"
-    if entry["status"] != "right" and status != "not attempted":
-        entry["status"] = status
-    _write(lesson, record)
-    return said
+
+    def count(record: dict) -> None:
+        entry = record["checks"].setdefault(number, {"status": status, "attempts": 0})
+        if status != "not attempted":
+            entry["attempts"] += 1
+            entry["status"] = "right" if entry["status"] == "right" else status
+
+    return _change(number.partition(".")[0], count)
 
 
-def _record_to_change(lesson: str) -> tuple[dict, str]:
-    """Return (record, ""). A damaged file is renamed; then return an empty record and a sentence that says so."""
-    try:
-        return read_record(lesson), ""
-    except RecordError:
-        damaged = record_folder() / f"{lesson}.json"
-        names = (damaged.with_name(f"{lesson}.unreadable-{n}.json") for n in itertools.count(1))
-        kept = next(name for name in names if not name.exists())
-        damaged.rename(kept)
-        said = f"{damaged} could not be read as a record; it is kept as {kept.name}, and a new record is started."
-        return {"predictions": {}, "checks": {}}, said
-
-
-def _write(lesson: str, record: dict) -> None:
-    folder = record_folder()
+def _change(lesson: str, change: Callable[[dict], None]) -> str:
+    """Change a lesson's record and write it. A damaged file is renamed; then return a sentence that says so."""
+    said, folder = "", record_folder()
     if folder is None:
-        return
+        return said
+    path = folder / f"{lesson}.json"
+    try:
+        record = read_record(lesson)
+    except RecordError:
+        names = (path.with_name(f"{lesson}.unreadable-{n}.json") for n in itertools.count(1))
+        kept = path.rename(next(name for name in names if not name.exists()))
+        said = f"{path} could not be read as a record; it is kept as {kept.name}, and a new record is started."
+        record = read_record(lesson)
+    change(record)
     folder.mkdir(parents=True, exist_ok=True)
-    text = json.dumps({"lesson": lesson, **record}, indent=1, ensure_ascii=False) + "\n"
-    atomic_write(folder / f"{lesson}.json", text)
+    atomic_write(path, json.dumps({"lesson": lesson, **record}, indent=1, ensure_ascii=False) + "\n")
+    return said

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-SINGLE_PRECISION = 1e-5
-"""Tolerance [-] for answers in float32, which has seven digits."""
+SINGLE_PRECISION = 1e-5  # tolerance [-] for answers in float32, which has seven digits
 
 
 def parts(right: object) -> tuple:
@@ -12,9 +11,8 @@ def parts(right: object) -> tuple:
 
 def is_row_of(n: int, answer: object) -> bool:
     """Return whether an answer is a tuple, a list or an array of length n."""
-    if isinstance(answer, np.ndarray) and answer.ndim == 0:
-        return False
-    return isinstance(answer, tuple | list | np.ndarray) and len(answer) == n
+    is_row = isinstance(answer, tuple | list) or (isinstance(answer, np.ndarray) and answer.ndim > 0)
+    return is_row and len(answer) == n
 
 
 def agree_all(answers: list, wanted: list, tolerance: float) -> bool:
@@ -23,22 +21,19 @@ def agree_all(answers: list, wanted: list, tolerance: float) -> bool:
 
 
 def agree(answer: object, right: object, tolerance: float) -> bool:
-    """Return whether an answer has the right shape, and the right values within the tolerance.
-
-    If a number is wanted, an array with this single number is right as well.
-    """
+    """Return whether an answer has the right shape, and the right values within the tolerance."""
     if isinstance(right, tuple):
-        return is_row_of(len(right), answer) and all(agree(a, r, tolerance) for a, r in zip(answer, right, strict=True))
+        return is_row_of(len(right), answer) and agree_all(list(answer), list(right), tolerance)
     values = shaped(as_numbers(answer), right)
     if values is None or values.shape != np.shape(right):
         return False
     if getattr(answer, "dtype", None) in (np.float16, np.float32):
         tolerance = max(tolerance, SINGLE_PRECISION)
-    return bool(np.allclose(values.astype(np.float64), right, rtol=tolerance, atol=tolerance, equal_nan=True))
+    return bool(np.allclose(values, right, rtol=tolerance, atol=tolerance, equal_nan=True))
 
 
 def shaped(values: np.ndarray | None, right: object) -> np.ndarray | None:
-    """Return `values`. If a single number is wanted, drop the axes of length one."""
+    """Return `values`. If a single number is wanted, an array with this number is right, so drop its axes."""
     return values.reshape(()) if values is not None and values.size == 1 and np.shape(right) == () else values
 
 

@@ -1,15 +1,11 @@
 """Exercises of lesson 00: how exercises work, on the term of equation (8), and a search for the top of its hill."""
 
-import functools
-
 import numpy as np
 
 from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.box_world import Box, BoxWorld
 from course_lib.lessons.kit.exercises import Exercise
 from course_lib.lessons.kit.values import as_numbers
-
-# 00.1: by how much do two depth images differ?
 
 
 def depth_difference(measured, simulated):
@@ -19,27 +15,9 @@ def depth_difference(measured, simulated):
 
 
 def two_images(rng: np.random.Generator) -> tuple:
-    measured = rng.uniform(1.0, 9.0, rng.integers(2, 5, size=2))
-    simulated = measured + rng.normal(0, 0.5, measured.shape)
-    if rng.random() < 0.5:  # a wall seen through an open door: nothing in the task caps a difference
-        simulated.flat[rng.integers(simulated.size)] += rng.uniform(12.0, 20.0)
-    return measured, simulated
-
-
-def a_gap_and_a_hole(rng: np.random.Generator) -> tuple:
-    """One pixel that the camera did not measure, and one where the map has a hole."""
-    measured, simulated = two_images(rng)
-    gap, hole = rng.choice(measured.size, size=2, replace=False)
-    measured.flat[gap], simulated.flat[hole] = np.nan, np.inf
-    return measured, simulated
-
-
-def equal_images(rng: np.random.Generator) -> tuple:
-    measured = two_images(rng)[0]
-    return measured, measured.copy()
-
-
-# 00.2: from the vote back to the difference
+    measured = rng.uniform(1.0, 9.0, (3, 4))
+    # Some pixels see a wall through an open door, because nothing in the task caps a difference.
+    return measured, measured + rng.normal(0, 0.5, (3, 4)) + np.where(rng.random((3, 4)) < 0.1, 15.0, 0.0)
 
 
 def difference_of_vote(vote, alpha):
@@ -49,49 +27,28 @@ def difference_of_vote(vote, alpha):
         return alpha / vote - alpha
 
 
-def votes(rng: np.random.Generator) -> tuple:
-    return rng.uniform(0.05, 0.95, rng.integers(2, 5, size=2)), rng.uniform(0.05, 0.5)
-
-
-def votes_of_0_and_1(rng: np.random.Generator) -> tuple:
-    """A hole in the map and no difference at all, among others, with the paper's alpha."""
-    return np.array([*rng.uniform(0.05, 0.95, 4), 1.0, 0.0, 0.5]), 0.1
-
-
-# 00.3: find the camera
-
-
-BUDGET = 400
-"""How many poses a search may ask for."""
-RAYS = np.deg2rad(np.arange(-180, 180, 8))
 ALPHA = 0.3  # m, wider than the paper's, because so few rays make a rough hill
-START_WITHIN = np.array([0.4, 0.3, np.deg2rad(10)])
-NEAR_ENOUGH = 0.03, 1.0  # m and degrees from the top; a good search comes far closer
-
-
-@functools.cache
-def small_room() -> BoxWorld:
-    """A room of 5 x 4 m with a pillar and a cupboard, 3 m high."""
-    walls = ((-0.2, -0.2), (0.0, 4.2)), ((5.0, -0.2), (5.2, 4.2)), ((-0.2, -0.2), (5.2, 0.0)), ((-0.2, 4.0), (5.2, 4.2))
-    things = ((3.6, 1.0), (3.9, 1.3)), ((4.2, 3.2), (5.0, 4.0))
-    return BoxWorld([Box((*low, 0.0), (*high, 3.0), 0.5) for low, high in (*walls, *things)])
+BUDGET = 400  # poses that a search may ask for
+# A room of 5 x 4 m, a pillar and a cupboard. Each box has x and y of two opposite corners [m].
+WALLS = (-0.2, -0.2, 0.0, 4.2), (5.0, -0.2, 5.2, 4.2), (-0.2, -0.2, 5.2, 0.0), (-0.2, 4.0, 5.2, 4.2)
+THINGS = (3.6, 1.0, 3.9, 1.3), (4.2, 3.2, 5.0, 4.0)
+ROOM = BoxWorld([Box((*corners[:2], 0.0), (*corners[2:], 3.0), 0.5) for corners in (*WALLS, *THINGS)])
 
 
 def distances(poses: np.ndarray) -> np.ndarray:
-    """Distances (N, 45) [m] that a scanner at poses (N, 3), each x, y [m] and yaw [rad], measures all around."""
-    angles = poses[:, 2:] + RAYS
+    """Return the distances (N, 45) [m] that a scanner measures all around at poses (N, 3), each x, y, yaw."""
+    angles = poses[:, 2:] + np.deg2rad(np.arange(-180, 180, 8))
     directions = np.stack([np.cos(angles), np.sin(angles), np.zeros_like(angles)], axis=-1)
-    origins = np.column_stack([poses[:, :2], np.full(len(poses), 1.2)])[:, None]
-    return small_room().cast(origins, directions).distance
+    return ROOM.cast(np.insert(poses[:, :2], 2, 1.2, axis=1)[:, None], directions).distance
 
 
 class Score:
     """`score(poses)` is l / m, eq. (8), of poses (N, 3) or of one pose (3,). It answers `BUDGET` poses in all."""
 
-    def __init__(self, truth: np.ndarray, blocked: np.ndarray) -> None:
-        self.truth, self.blocked, self.asked = truth, blocked, 0
+    def __init__(self, truth: np.ndarray, first_blocked: int) -> None:
+        self.truth, self.first_blocked, self.asked = truth, first_blocked, 0
         self.measured = distances(truth[None])[0]
-        self.measured[blocked] = 0.7  # m, a person in front of the scanner
+        self.measured[first_blocked : first_blocked + 5] = 0.7  # m, a person in front of the scanner
 
     def __call__(self, poses: np.ndarray) -> np.ndarray | float:
         given = np.asarray(poses, dtype=np.float64)
@@ -107,7 +64,7 @@ class Score:
         return isinstance(other, Score) and np.array_equal(self.truth, other.truth)
 
     def __deepcopy__(self, memo: dict) -> "Score":
-        return Score(self.truth, self.blocked)  # for another search, which has asked nothing yet
+        return Score(self.truth, self.first_blocked)  # for another search, which has asked nothing yet
 
 
 def find_the_camera(score, start):
@@ -123,18 +80,10 @@ def find_the_camera(score, start):
 
 
 def a_search(rng: np.random.Generator, off=None) -> tuple:
-    """A score and a start, `off` times the greatest distance away from the top (default: anywhere within it)."""
-    truth, first = rng.uniform([1.2, 1.2, -0.5], [2.8, 2.8, 0.5]), int(rng.integers(40))
-    off = rng.uniform(-1, 1, 3) if off is None else off
-    return Score(truth, np.arange(first, first + 5)), truth + START_WITHIN * off
-
-
-def a_far_start(rng: np.random.Generator) -> tuple:
-    return a_search(rng, rng.choice([-1, 1], 3))
-
-
-def start_at_the_top(rng: np.random.Generator) -> tuple:
-    return a_search(rng, 0)
+    """Return a score and a start, `off` times the greatest distance away from the top (default: at random)."""
+    truth, first_blocked = rng.uniform([1.2, 1.2, -0.5], [2.8, 2.8, 0.5]), int(rng.integers(40))
+    away = np.array([0.4, 0.3, np.deg2rad(10)]) * (rng.uniform(-1, 1, 3) if off is None else off)
+    return Score(truth, first_blocked), truth + away
 
 
 def off_the_top(arguments: tuple, answer: object) -> str | None:
@@ -144,83 +93,77 @@ def off_the_top(arguments: tuple, answer: object) -> str | None:
         return "Return one pose: three finite numbers, x, y and yaw."
     x, y, yaw = found.reshape(3) - score.truth
     away, turned = np.hypot(x, y), np.rad2deg(abs(wrap_angle(yaw)))
-    if away <= NEAR_ENOUGH[0] and turned <= NEAR_ENOUGH[1]:
+    if away <= 0.03 and turned <= 1.0:  # a good search comes far closer
         return None
     ends = f"One of your searches ends {away:.2f} m and {turned:.1f} degrees from the top"
-    if away > np.hypot(*(start - score.truth)[:2]) + NEAR_ENOUGH[0]:
+    if away > np.hypot(*(start - score.truth)[:2]) + 0.03:
         return f"{ends}, farther away than it began. Does it keep the *greatest* score, in radians?"
     return (
-        f"{ends}. Each cloud should lie about the best pose so far and be narrower than the one before, "
-        "but not by so much that the top is left outside."
+        f"{ends}. Draw each cloud about the best pose so far, and narrower, but not by so much that it misses the top."
     )
-
-
-def each_number_once(score, start):
-    best = start
-    for k, reach in enumerate(START_WITHIN):
-        tried = best + np.linspace(-reach, reach, BUDGET // 3)[:, None] * np.eye(3)[k]
-        best = tried[np.argmax(score(tried))]
-    return best
 
 
 # fmt: off
 EXERCISES = [
-    Exercise("00.1", depth_difference, two_images, "warm-up", cases=[a_gap_and_a_hole, equal_images], mistakes="""
-        np.abs(measured - simulated) => measured - simulated
+    Exercise("00.1", depth_difference, two_images, "warm-up", cases={
+        "a gap and a hole": lambda rng: (np.array([[np.nan, 2.0, 3.0]]), np.array([[2.0, 2.5, np.inf]])),
+        "equal images": lambda rng: (np.full((2, 3), 4.0), np.full((2, 3), 4.0)),
+    }, mistakes="""
+        np.abs( => (
         np.abs(measured - simulated) => simulated - measured
-        Too near is as wrong as too far, and no difference is less than zero: which function drops the sign?
-        np.abs(measured - simulated) => np.abs(measured - simulated).sum()
+        Too near is as wrong as too far, and no difference is below zero. Which function drops the sign?
         np.abs(measured - simulated) => np.abs(measured - simulated).mean()
-        np.abs(measured - simulated) => np.nansum(np.abs(measured - simulated))
-        np.abs(measured - simulated) => np.nanmean(np.abs(measured - simulated))
-        That is one number for the whole image; here every pixel keeps its own.
+        That is one number for the whole image. Here every pixel keeps its own.
         np.abs(measured - simulated) => np.nan_to_num(np.abs(measured - simulated))
-        np.abs(measured - simulated) => np.nan_to_num(np.abs(measured - simulated), posinf=np.inf)
-        np.abs(measured - simulated) => np.abs(np.nan_to_num(measured) - np.nan_to_num(simulated))
+        np.abs(measured - simulated) => np.where(np.isnan(measured), 0.0, np.abs(measured - simulated))
         Where the camera measured nothing (nan) yours gives a number, as if it were known. Leave nan and inf alone.
         np.abs(measured - simulated) => np.minimum(np.abs(measured - simulated), 10.0)
-        Yours stops at 10 m. Nothing in the task caps a difference: through an open door it is larger.
+        Yours stops at 10 m. Nothing in the task caps a difference, and through an open door it is larger.
         np.abs(measured - simulated) => 0.1 / (0.1 + np.abs(measured - simulated))
-        That is the pixel's vote. The task asks one step earlier: for the difference in metres.
+        That is the pixel's vote. The task asks one step earlier, for the difference in metres.
         np.abs(measured - simulated) => np.where(np.isinf(simulated), np.nan, np.abs(measured - simulated))
-        Where the map has a hole yours is nan. Only what was *not measured* is nan; at a hole it is inf.
+        Where the map has a hole yours is nan. Only a pixel that was *not measured* is nan; at a hole it is inf.
     """),
-    Exercise("00.2", difference_of_vote, votes, cases=[votes_of_0_and_1], mistakes="""
+    Exercise("00.2", difference_of_vote,
+             lambda rng: (rng.uniform(0.05, 0.95, (3, 4)), rng.uniform(0.05, 0.5)),
+             cases={"votes of 0 and 1": lambda rng: (np.array([0.1, 0.6, 1.0, 0.0, 0.5]), 0.1)}, mistakes="""
         alpha / vote - alpha => alpha * vote / (1 - vote)
-        At vote 1 yours is inf, and there the two images agree. Numerator and denominator changed places.
+        At vote 1 yours is inf, but there the two images agree. Numerator and denominator have changed places.
         - alpha =>
-        At vote 1 the difference must be 0; yours is alpha. What is left to take away?
+        At vote 1 the difference must be 0, and yours is alpha. What do you have to take away?
         alpha / vote - alpha => (1 - vote) / vote
-        Yours has no unit: a vote is a pure number. What turns it into metres?
+        Yours has no unit, because a vote is a pure number. What turns it into metres?
         alpha / vote - alpha => alpha * (1 - vote)
-        Half of the votes is a difference of alpha; yours gives half of it. The term is not a straight line.
+        A vote of one half is a difference of alpha, and yours gives half of it. The term is not a straight line.
         alpha / vote - alpha => alpha / (alpha + vote)
-        That is the term again, with the vote put in as if it were a difference. Solve it for d.
+        That is the term again, with the vote in place of the difference. Solve it for d.
         alpha / vote - alpha => 0.1 / vote - 0.1
-        Right for the paper's alpha alone: yours is always 0.1. Take the one that is given.
+        Yours is right for the paper's alpha of 0.1 alone. Take the alpha that is given.
         alpha / vote - alpha => np.where(vote > 0, alpha / vote - alpha, np.nan)
         alpha / vote - alpha => np.where(vote > 0, alpha / vote - alpha, 0)
-        A vote of 0 is neither nan nor no difference at all: only an infinite difference earns nothing.
+        A vote of 0 gives neither nan nor 0, because only an infinite difference earns nothing.
         alpha / vote - alpha => 1 / vote - alpha
         You have 1 where alpha belongs: vote times (alpha + d) is alpha, not 1.
+        alpha / vote - alpha => alpha / vote - 1
+        You take a pure number away from metres. Solve v (alpha + d) = alpha again and look at the unit of each term.
     """),
-    Exercise("00.3", find_the_camera, a_search, "challenge", cases=[a_far_start, start_at_the_top], verify=off_the_top,
-             mistakes="""
+    Exercise("00.3", find_the_camera, a_search, "challenge", verify=off_the_top, cases={
+        "a far start": lambda rng: a_search(rng, rng.choice([-1, 1], 3)),
+        "start at the top": lambda rng: a_search(rng, 0),
+    }, mistakes="""
         ... => return start
-        That is the pose that you were given: ask `score` about others, and keep the best.
+        That is the pose that you were given. Ask `score` about others, and keep the best.
         argmax => argmin
-        You keep the worst pose: the true one has the *greatest* score.
+        You keep the worst pose. The true one has the *greatest* score.
         range(10) => range(1) and also (40, 3) => (400, 3)
         One wide cloud never comes close enough. Where would you draw the next one, and how wide?
         cloud = best + => cloud = start +
         Every cloud of yours lies about the start. Draw the next one about the best pose so far.
         0.65 * spread => spread
-        Your clouds stay as wide as the first. Let each be narrower than the one before.
+        Your clouds stay as wide as the first. Make each of them narrower than the one before.
         0.65 * spread => 0.2 * spread
-        Your clouds become narrow too soon: the top is left outside. Let each be about two thirds as wide.
+        Your clouds become narrow too soon, so they miss the top. Make each about two thirds as wide.
         np.deg2rad(7) => 7
-        Your yaw spreads over 7 radians. Poses are in radians: convert the degrees.
-    """, functions={
-        each_number_once: "You set each number once. Then the first is no longer the best: go round again.",
-    }),
+        Your yaw spreads over 7 radians. Poses are in radians, so convert the degrees.
+    """),
 ]

@@ -1,11 +1,14 @@
-"""Figures of lesson 00: the idea, the hills of eq. (8), the filter at work, the second method on one pair."""
+"""Figures of lesson 00, and its panel, which moves a particle until eq. (8) is at its peak."""
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from course_lib.depth_mcl.likelihood import ALPHA, valid_pixels
 from course_lib.depth_mcl.localizer import Estimate
 from course_lib.lessons.kit.display import described
-from course_lib.lessons.lesson_00.recorded import DEPTH_LIMITS, UNITS, Moment
+from course_lib.lessons.kit.live_figure import LiveFigure
+from course_lib.lessons.kit.panel import Drawing, Panel, Slider, Switch
+from course_lib.lessons.lesson_00.recorded import Moment, moment, moved
 from course_lib.plots import figures
 from course_lib.plots.corridor_figures import floor_plan
 from course_lib.plots.panorama_drawing import add_list, draw_objects, panorama
@@ -14,11 +17,15 @@ from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.recording import StereoPair
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
+DEPTH_LIMITS = (0.0, 10.0)  # metres: the range of the camera
 HALF_VIEW = np.deg2rad(21.8)  # half of the SR4000's 43.6 degrees
+UNITS = {"x": "m", "y": "m", "yaw": "degrees"}
+RANGES = {"x": (1.5, 0.05), "y": (0.6, 0.01), "yaw": (15.0, 0.1)}  # of the panel: to each side, and a step
+BESIDE = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "frameon": False}  # a legend right of its axes
 
 
 def idea_figure(now: Moment, guess: np.ndarray) -> Figure:
-    """The camera and a particle from above, what the camera measured, and what the particle would see."""
+    """Draw the camera and a particle from above, the measured image, and the image that the particle would see."""
     figure, (plan, left, right) = figures.new_figure(1, 3, size=(9.8, 2.9))
     walls = floor_plan(now.renderer.scene_map.vertices, now.state[2])
     walls = walls[np.abs(walls[:, 0] - now.state[0]) < 3.5]
@@ -40,24 +47,24 @@ def idea_figure(now: Moment, guess: np.ndarray) -> Figure:
 
 
 def hills_figure(offsets: dict[str, np.ndarray], shares: dict[str, np.ndarray]) -> Figure:
-    """Equation (8) over the particle's distance from the true pose, one picture for each of x, y and yaw."""
+    """Draw equation (8) over the particle's distance from the true pose, one picture for each of x, y and yaw."""
     figure, axes = figures.new_figure(1, 3, size=(9.4, 2.7))
     for index, (a, name) in enumerate(zip(axes, offsets, strict=True)):
         a.plot(offsets[name], shares[name], **(figures.line_style(index) | {"markersize": 3.5}))
         a.axvline(0, color="black", linewidth=0.8, linestyle=(0, (4, 3)))
-        a.set(title=f"{name} alone is wrong", xlabel=f"{name} - true {name} [{UNITS[name]}]", ylim=(0, 0.85))
-        a.set_ylabel("l / m [-]")
+        a.set(title=f"{name} alone is wrong", xlabel=f"{name} - true {name} [{UNITS[name]}]")
+        a.set(ylabel="l / m [-]", ylim=(0, 0.85))
     alt = "Three curves of l / m over the error in x, y and yaw; each is a hill with its top at zero error."
     return described(figure, alt)
 
 
 def covered_figure(offsets: np.ndarray, shares: dict[str, np.ndarray]) -> Figure:
-    """Equation (8) along the corridor for several parts of one image."""
+    """Draw equation (8) along the corridor for several parts of one image."""
     figure, axes = figures.new_figure(size=(6.4, 2.9))
     for index, (name, share) in enumerate(shares.items()):
         axes.plot(offsets, share, **(figures.line_style(index) | {"markersize": 4}), label=name)
     axes.set(title="Equation (8) along the corridor", xlabel="x - true x [m]", ylabel="l / m [-]", ylim=(0, 1))
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    axes.legend(**BESIDE)
     alt = (
         "l / m over the error along the corridor: a steep hill for the whole image, nearly a level line for the floor."
     )
@@ -65,7 +72,7 @@ def covered_figure(offsets: np.ndarray, shares: dict[str, np.ndarray]) -> Figure
 
 
 def filter_figure(estimates: list[Estimate], true: np.ndarray) -> Figure:
-    """From above: the particles of every frame, the estimates and the true positions `(T, 2 or 3)`."""
+    """Draw the particles of every frame, the estimates and the true positions `(T, 2 or 3)` from above."""
     figure, axes = figures.new_figure(size=(8.6, 2.9))
     cloud = np.concatenate([estimate.particles for estimate in estimates])
     positions = np.array([estimate.state for estimate in estimates])
@@ -73,13 +80,13 @@ def filter_figure(estimates: list[Estimate], true: np.ndarray) -> Figure:
     axes.plot(*true[:, :2].T, **(figures.line_style(0) | {"markersize": 7}), label="true position")
     axes.plot(*positions[:, :2].T, **figures.line_style(3), label="estimate")
     axes.set(title="The filter at work, seen from above (y enlarged)", xlabel="x [m]", ylabel="y [m]")
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    axes.legend(**BESIDE)
     alt = "Ten estimates beside ten true positions from above, with the clouds of particles around them."
     return described(figure, alt)
 
 
 def room_figure(pair: StereoPair, found: Localization, semantic_map: SemanticMap) -> Figure:
-    """The second method on one pair: what was detected in the upper panorama, and the pose on the map."""
+    """Draw the second method on one pair: the objects in the upper panorama, and the pose on the map."""
     image, _ = pair.images()
     boxes, labels = zip(*[(one.box, one.label) for one in found.upper_detections], strict=True)
     figure, (view, plan) = figures.new_figure(1, 2, size=(10.4, 4.6))
@@ -90,10 +97,60 @@ def room_figure(pair: StereoPair, found: Localization, semantic_map: SemanticMap
     draw_pose(plan, *pair.pose, figures.BLACK, "true pose")
     draw_pose(plan, *found.pose, figures.ORANGE, "estimated pose")
     map_axes(plan, semantic_map, "The semantic map, from above")
-    plan.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=7)
+    plan.legend(**BESIDE, fontsize=7)
     lines = [f"{number:2d} {label}" for number, label in enumerate(labels, start=1)]
     add_list(figure, lines, 7, "the numbers in the panorama", labels)
     draw_objects(view, boxes, labels, image.shape[1])
     alt = """The upper panorama with a numbered box around every object found; and the room from above with the true
         and the estimated pose and lines to the objects that were used."""
     return described(figure, alt)
+
+
+def pose_panel() -> Panel:
+    """Move a particle until its view agrees with the measured one. There eq. (8) is greatest."""
+    now = moment()
+    measured = valid_pixels(now.measured)
+    truth = {"x": now.state[0], "y": now.state[1], "yaw": np.rad2deg(now.state[5])}
+    figure, ((measured_axes, seen_axes, term_axes), hill_axes) = figures.new_figure(2, 3, size=(9.8, 5.0))
+    figures.depth_image(measured_axes, now.measured, "Measured by the camera", DEPTH_LIMITS)
+    blank = np.zeros(now.measured.shape)
+    seen = figures.depth_image(seen_axes, blank, "Seen from the particle", DEPTH_LIMITS)
+    figures.colour_bar(figure, seen, [measured_axes, seen_axes])
+    terms = figures.depth_image(term_axes, blank, "Every pixel's term of eq. (8)", (0, 1))
+    figures.colour_bar(figure, terms, term_axes, "agreement [-]")
+    markers, hills, sliders, goal = [], [], [], {}
+    for index, (a, (name, (half, step))) in enumerate(zip(hill_axes, RANGES.items(), strict=True)):
+        offsets, unit = np.linspace(-half, half, 31), UNITS[name]
+        shares = now.share(moved(now.state, name, offsets))
+        hills += a.plot(truth[name] + offsets, shares, **(figures.line_style(index) | {"marker": ""}))
+        markers += a.plot([], [], "o", color=figures.VERMILION, markersize=9)
+        a.set(title=f"l / m over {name}", xlabel=f"{name} of the particle [{unit}]", ylabel="l / m [-]")
+        a.set(xlim=(truth[name] - half, truth[name] + half), ylim=(0, 0.9))
+        goal[name] = at = round(round(truth[name] / step) * step, 2)
+        start = round(at - 1.2, 2) if name == "x" else at  # the panel begins 1.2 m behind the true pose
+        sliders.append(Slider(name, f"{name} [{unit}]", round(at - half, 2), round(at + half, 2), start, step))
+    live = LiveFigure(figure, [seen, terms, *hills, *markers])
+
+    def draw(x: float, y: float, yaw: float, hills_shown: bool) -> Drawing:
+        state = now.state.copy()
+        state[[0, 1, 5]] = x, y, np.deg2rad(yaw)
+        simulated = now.renderer.render(state)[0]
+        term = ALPHA / (ALPHA + np.abs(now.measured - simulated))
+        share, near = term[measured].mean(), (term[measured] > 0.5).mean()  # one half is a difference of alpha
+        seen.set_data(np.ma.masked_invalid(simulated))
+        terms.set_data(np.ma.masked_invalid(term))
+        for hill, marker, value in zip(hills, markers, (x, y, yaw), strict=True):
+            marker.set_data([value], [share])
+            hill.set_visible(hills_shown)
+        summary = f"eq. (8): l / m = {share:.2f} of 1;  measured pixels that agree to 0.1 m: {near:.0%}"
+        alt = (
+            f"Depth image of the camera; depth image seen from a particle at x {x:.2f} m, y {y:.2f} m, yaw {yaw:.1f} "
+            f"degrees; agreement of every pixel; and three plots of l / m with the particle's value, {share:.2f}."
+        )
+        return Drawing(live.png(), alt, summary)
+
+    controls = [*sliders, Switch("hills_shown", "show the hills")]
+    return Panel("00 find the pose", controls, draw, actions={"Show the true pose": lambda values: dict(goal)})
+
+
+PANELS = {"00 find the pose": pose_panel}

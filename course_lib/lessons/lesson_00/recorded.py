@@ -13,56 +13,52 @@ from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 
 FRAME = 100  # of the corridor run: benches, doors and pillars in view, nothing special (chosen)
-DEPTH_LIMITS = (0.0, 10.0)  # metres: the range of the camera
-CEILING = 2.6  # metres above the floor, in the corridor
-SURFACE = 0.08  # metres: what is nearer to floor or ceiling belongs to it (chosen)
-UNITS = {"x": "m", "y": "m", "yaw": "degrees"}
 
 
 class Moment(NamedTuple):
-    """One frame: the depths `(H, W)` [m] that were measured, the true pose `(6,)`, and a renderer of the map."""
+    """One frame: the measured depths `(H, W)` [m], the true pose `(6,)`, and a renderer of the map."""
 
     measured: np.ndarray
     state: np.ndarray
     renderer: DepthRenderer
 
     def share(self, states: np.ndarray) -> np.ndarray:
-        """l / m `(N,)`: the likelihood, eq. (8), divided by the number of measured pixels: 1 for perfect agreement."""
+        """Return l / m `(N,)`: eq. (8) divided by the number of measured pixels. 1 is perfect agreement."""
         return likelihood(self.measured, self.renderer.render(states)) / valid_pixels(self.measured).sum()
 
 
 @functools.cache
 def moment() -> Moment:
-    """Frame `FRAME` of the corridor run."""
+    """Return frame `FRAME` of the corridor run."""
     run = wagon_run()
     state = state_from_optical_pose(run.camera_to_world[FRAME])
     return Moment(run.depth(FRAME), state, DepthRenderer(corridor_map(), run.camera()))
 
 
 def wall_reads(distance: float) -> float:
-    """Depth [m] that the renderer gives for a wall `distance` metres ahead: does drawing work on this computer?"""
+    """Return the depth [m] that the renderer gives for a wall `distance` metres ahead. It shows that drawing works."""
     wall = box_map(((distance, -9.0, -9.0), (distance + 0.1, 9.0, 9.0)))
     with DepthRenderer(wall, DepthCamera.sr4000()) as renderer:
         return float(renderer.render(np.zeros(6))[0, 72, 88])
 
 
 def moved(state: np.ndarray, name: str, offsets: np.ndarray) -> np.ndarray:
-    """States `(N, 6)`: one state, moved along "x" or "y" (metres) or turned by "yaw" (degrees)."""
+    """Return states `(N, 6)`: one state, moved along "x" or "y" (metres) or turned by "yaw" (degrees)."""
     by = np.deg2rad(offsets) if name == "yaw" else offsets
     return state + np.outer(by, np.eye(6)[{"x": 0, "y": 1, "yaw": 5}[name]])
 
 
 def mean_votes(now: Moment, back: float) -> dict[str, tuple[float, float]]:
-    """Mean term of eq. (8) of the pixels on each surface: at the true pose, and from `back` metres behind it.
+    """Return the mean term of eq. (8) on each surface, at the true pose and from `back` metres behind it.
 
-    The map tells which surface a pixel sees from the true pose. What stands before a side wall belongs to it.
+    The map tells which surface a pixel sees from the true pose. Things in front of a side wall belong to it.
     """
     views = now.renderer.render(np.stack([now.state, now.state - [back, 0, 0, 0, 0, 0]]))
     votes = ALPHA / (ALPHA + np.abs(now.measured - views))
     both = valid_pixels(now.measured) & np.isfinite(views).all(axis=0)
     pose = optical_pose(now.state)
     seen = now.renderer.camera.points(np.where(both, views[0], 0)) @ pose[:3, :3].T + pose[:3, 3]
-    floor, ceiling, left = seen[..., 2] < SURFACE, seen[..., 2] > CEILING - SURFACE, seen[..., 1] > 0
+    floor, ceiling, left = seen[..., 2] < 0.08, seen[..., 2] > 2.6 - 0.08, seen[..., 1] > 0  # the ceiling is at 2.6 m
     side = ~floor & ~ceiling
     parts = {"floor": floor, "ceiling": ceiling, "left side": side & left, "right side": side & ~left}
     return {name: tuple(votes[:, part & both].mean(axis=1).tolist()) for name, part in parts.items()}

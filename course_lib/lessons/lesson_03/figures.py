@@ -19,7 +19,7 @@ SLOPES = np.linspace(-0.24, 0.24, 7)  # of the rays of seven pixels, from the si
 
 
 def side_view() -> dict[str, list[tuple[float, float]]]:
-    """Depth and height [m] where the rays meet the surfaces: the nearest of each ray is kept, others are hidden."""
+    """Return depth and height [m] where the rays meet the surfaces: each ray's nearest is kept, others are hidden."""
     hits = {"kept": [], "hidden": []}
     for slope in SLOPES:
         depths = []
@@ -33,7 +33,7 @@ def side_view() -> dict[str, list[tuple[float, float]]]:
 
 
 def idea_figure(hits: dict[str, list[tuple[float, float]]]) -> Figure:
-    """Side view of eq. (6): rays through pixel centres, the nearest hit of each kept, the others hidden."""
+    """Draw eq. (6) from the side: rays through pixel centres, the nearest hit of each kept, the others hidden."""
     figure, axes = figures.new_figure(size=(8.2, 3.1))
     for index, surface in enumerate(SURFACES):
         style = figures.line_style(index) | {"marker": "", "linewidth": 3}
@@ -44,33 +44,36 @@ def idea_figure(hits: dict[str, list[tuple[float, float]]]) -> Figure:
     kept, hidden = (np.transpose(hits[name]) for name in ("kept", "hidden"))
     axes.plot(*kept, "o", color=figures.VERMILION, markersize=8, label="kept: the least Z of its ray")
     axes.plot(*hidden, "o", color=figures.VERMILION, mfc="white", label="hidden: a larger Z")
-    for position, name in ((0.6, "near"), (6.5, "far")):
-        axes.axvline(position, color=figures.PURPLE, linestyle=":", linewidth=1.6)
-        axes.text(position + 0.05, -1.62, name, color=figures.PURPLE)
+    for plane, name in ((0.6, "near"), (6.5, "far")):
+        axes.axvline(plane, color=figures.PURPLE, linestyle=":", linewidth=1.6)
+        axes.text(plane + 0.05, -1.62, name, color=figures.PURPLE)
     axes.plot(0, 0, "s", color=figures.BLACK, markersize=9)
     axes.text(-0.1, -0.35, "virtual\ncamera", va="top")
     axes.set(xlabel="depth Z along the optical axis [m]", ylabel="height [m]", xlim=(-0.2, 7), ylim=(-1.75, 1.75))
     axes.set_title("What a z-buffer keeps, seen from the side")
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
-    alt = """Side view: seven rays leave a virtual camera; each keeps its first hit on a surface and drops the later
-        ones."""
+    alt = (
+        "Side view: seven rays leave a virtual camera; each keeps its first hit on a surface and drops the later ones."
+    )
     return described(figure, alt)
 
 
 def triangle_figure(images: list[np.ndarray]) -> Figure:
+    """Draw a triangle's depth images, by mixing 1/Z and by mixing Z."""
     figure = figures.depth_images(images, ["Mixing 1/Z: right", "Mixing Z: wrong"], limits=(2, 6))
     alt = "Two depth images of one triangle that leans away from the camera; mixing Z makes its middle too far away."
     return described(figure, alt)
 
 
 def agree_figure(images: list[np.ndarray]) -> Figure:
+    """Draw the corridor's end by hand and by VTK."""
     figure = figures.depth_images(images, ["By hand, in NumPy", "By VTK's z-buffer"], limits=(0, 8))
     alt = "Two equal depth images of a corridor's end: a wall at 7.5 m, in front of it a pillar (left) and a crate."
     return described(figure, alt)
 
 
 def window_figure(images: np.ndarray, columns: int) -> Figure:
-    """Depth images `(N, H, W)` [m] as the tiles of one window, N a multiple of `columns`."""
+    """Draw depth images `(N, H, W)` [m] as the tiles of one window, N a multiple of `columns`."""
     n, height, width = images.shape
     window = images.reshape(-1, columns, height, width).swapaxes(1, 2).reshape(-1, columns * width)
     figure, axes = figures.new_figure(size=(7.4, 4.3))
@@ -84,12 +87,12 @@ def window_figure(images: np.ndarray, columns: int) -> Figure:
     return described(figure, alt)
 
 
-def buffer_figure(far: float = 30.0) -> Figure:
-    """The depth buffer's value over depth for three near planes."""
+def buffer_figure() -> Figure:
+    """Draw the depth buffer's value over depth for three near planes, and far = 30 m."""
     figure, axes = figures.new_figure(size=(6.4, 3.0))
     for index, near in enumerate((1.0, 0.1, 0.01)):
-        z, style = np.geomspace(near, far, 200), figures.line_style(index) | {"markevery": 12}
-        axes.plot(z, far * (z - near) / (z * (far - near)), **style, label=f"near = {near:g} m")
+        z, style = np.geomspace(near, 30.0, 200), figures.line_style(index) | {"markevery": 12}
+        axes.plot(z, 30.0 * (z - near) / (z * (30.0 - near)), **style, label=f"near = {near:g} m")
     axes.set(xlabel="depth Z [m]", ylabel="buffer value b [-]", xlim=(-0.2, 10), ylim=(-0.02, 1.03))
     axes.set_title("The depth buffer's value is not linear in Z")
     axes.legend(loc="lower right")
@@ -98,7 +101,7 @@ def buffer_figure(far: float = 30.0) -> Figure:
 
 
 def time_figure(counts: list[int], tiled: np.ndarray, single: np.ndarray) -> Figure:
-    """Time a view [ms], from seconds, over the number of views."""
+    """Draw the time of a view [ms], from seconds, over the number of views."""
     figure, axes = figures.new_figure(size=(5.4, 2.8))
     for index, (seconds, name) in enumerate(((tiled, "tiles of one window"), (single, "one after the other"))):
         axes.plot(counts, seconds * 1000, **figures.line_style(index), label=name)
@@ -125,7 +128,7 @@ def renderer_of(near: float, backend: str) -> DepthRenderer:
 
 
 def camera_panel() -> Panel:
-    """Move the virtual camera and its near plane; see the depth image and how far it is from ray casting."""
+    """Move the virtual camera and its near plane. See the depth image and how far it is from ray casting."""
     figure, (plan, left, right) = figures.new_figure(1, 3, size=(9.8, 3.0))
     plan.plot([0, 8, 8, 0], [-1.5, -1.5, 1.5, 1.5], color=figures.BLACK)  # open behind
     for x, y, size in ((5.0, 0.5, 0.3), (4.0, -0.8, 0.5)):
@@ -152,18 +155,15 @@ def camera_panel() -> Panel:
         ahead, aside = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
         slope = CAMERA.width / 2 / CAMERA.fx
         half = max(plane * slope, 0.5)  # drawn beyond the view: at 0.1 m only 8 cm of the plane are in view
-        for line, points in (
-            (wedge, [(0, 0), (1.6, -1.6 * slope), (1.6, 1.6 * slope), (0, 0)]),
-            (near_line, [(plane, half), (plane, -half)]),
-        ):
+        view = [(0, 0), (1.6, -1.6 * slope), (1.6, 1.6 * slope), (0, 0)]
+        for line, points in ((wedge, view), (near_line, [(plane, half), (plane, -half)])):
             line.set_data(*(state[:2] + np.array(points) @ [ahead, aside]).T)
         middle = truth[CAMERA.height // 2, CAMERA.width // 2]
-        step_mm = buffer_step(middle, plane, CAMERA.far) * 1000
+        step_mm, hit_nothing = buffer_step(middle, plane, CAMERA.far) * 1000, np.isinf(image).mean()
         seen = f"Z = {middle:.2f} m; one step of the z-buffer there: {step_mm:.2g} mm"
         lines = [
             f"middle pixel: {seen if middle < np.inf else 'nothing hit'}",
-            f"pixels where nothing is hit: {np.isinf(image).mean():.0%}; "
-            f"pixels more than 1 mm off: {(off_mm > 1).mean():.0%}",
+            f"pixels where nothing is hit: {hit_nothing:.0%}; pixels more than 1 mm off: {(off_mm > 1).mean():.0%}",
         ]
         alt = f"""Plan of the corridor with the camera at x {x:.1f} m, y {y:.1f} m, yaw {yaw:.0f} degrees; its depth
             image; and the difference from ray casting with near plane {near} m. {" ".join(lines)}"""

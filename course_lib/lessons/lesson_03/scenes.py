@@ -10,24 +10,24 @@ from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 
-PILLAR, CRATE = ((5.0, 0.5, 0.0), (5.3, 0.8, 2.6)), ((4.0, -0.8, 0.0), (4.5, -0.3, 0.7))
-AHEAD = (((8.0, -1.5, 0.0), (8.2, 1.5, 2.6)), PILLAR, CRATE)
+END_WALL, PILLAR = ((8.0, -1.5, 0.0), (8.2, 1.5, 2.6)), ((5.0, 0.5, 0.0), (5.3, 0.8, 2.6))
+CRATE = ((4.0, -0.8, 0.0), (4.5, -0.3, 0.7))
 FLOOR, CEILING = ((0.0, -1.5, -0.1), (8.2, 1.5, 0.0)), ((0.0, -1.5, 2.6), (8.2, 1.5, 2.7))
-SIDES = (((0.0, 1.5, 0.0), (8.2, 1.6, 2.6)), ((0.0, -1.6, 0.0), (8.2, -1.5, 2.6)))
+LEFT, RIGHT = ((0.0, 1.5, 0.0), (8.2, 1.6, 2.6)), ((0.0, -1.6, 0.0), (8.2, -1.5, 2.6))
 
 
 def corridor_end() -> SceneMap:
-    """What stands at the end of a corridor: the end wall (8 m), a pillar (5 m) and a crate (4 m)."""
-    return box_map(*AHEAD)
+    """Return a corridor's end: the end wall (8 m), a pillar (5 m) and a crate (4 m)."""
+    return box_map(END_WALL, PILLAR, CRATE)
 
 
 def corridor() -> SceneMap:
-    """The same with floor, ceiling and side walls: 3 m wide, 2.6 m high, 8 m long."""
-    return box_map(*AHEAD, FLOOR, CEILING, *SIDES)
+    """Return a corridor with the same end, 3 m wide, 2.6 m high, 8 m long."""
+    return box_map(END_WALL, PILLAR, CRATE, FLOOR, CEILING, LEFT, RIGHT)
 
 
 def wall_with_hole(radius: float) -> SceneMap:
-    """A wall of small triangles 4 m ahead, 6 m by 6 m, with a hole: none within `radius` metres of its middle."""
+    """Return a wall of small triangles 4 m ahead, 6 m by 6 m, with a hole of this radius [m] in its middle."""
     n = 121
     y, z = np.meshgrid(np.linspace(-3, 3, n), np.linspace(-3, 3, n))
     vertices = np.column_stack([np.full(n * n, 4.0), y.ravel(), z.ravel()])
@@ -37,12 +37,12 @@ def wall_with_hole(radius: float) -> SceneMap:
 
 
 def buffer_step(z: float, near: float, far: float) -> float:
-    """Depth [m] between two neighbouring values of a depth buffer of 24 bits at depth z [m]: dZ/db 2^-24."""
+    """Return the depth [m] between two neighbouring values of a depth buffer of 24 bits at depth z [m]: dZ/db 2^-24."""
     return z**2 * (far - near) / (near * far) * 2.0**-24
 
 
 def slanted_wall_error(near: float) -> np.ndarray:
-    """|z-buffer - exact depth| [m] at every pixel, for a wall about 7.5 m ahead, turned by 30 degrees."""
+    """Return |z-buffer - exact depth| [m] at every pixel, for a wall about 7.5 m ahead, turned by 30 degrees."""
     camera, turn = DepthCamera.sr4000(near=near), np.deg2rad(30)
     along, up, middle = np.array([np.sin(turn), np.cos(turn), 0]), np.array([0, 0, 1]), np.array([7.5, 0, 0])
     corners = np.array([middle + a * along + b * up for a, b in ((-9, -9), (9, -9), (9, 9), (-9, 9))])
@@ -54,7 +54,7 @@ def slanted_wall_error(near: float) -> np.ndarray:
 
 
 def seconds_per_view(scene_map: SceneMap, camera: DepthCamera, states: np.ndarray, counts: list[int]) -> np.ndarray:
-    """Seconds a view (2, counts), the best of four repeats: as tiles of one window, and one after the other."""
+    """Return seconds a view (2, counts), the best of four repeats: as tiles of one window, and one after the other."""
     window, alone = (DepthRenderer(scene_map, camera, "vtk", exact=True) for _ in range(2))
     seconds = np.zeros((4, 2, len(counts)))
     with window, alone:
@@ -70,7 +70,7 @@ def seconds_per_view(scene_map: SceneMap, camera: DepthCamera, states: np.ndarra
 
 
 def views_that_see(scene_map: SceneMap, n_views: int) -> float:
-    """Share of views, turned a little from one to the next, in which at least one pixel hits the map."""
+    """Return the share of views, each turned a little, in which at least one pixel hits the map."""
     states = np.outer(np.linspace(-0.1, 0.1, n_views), [0, 0, 0, 0, 0, 1])
     with DepthRenderer(scene_map, DepthCamera(width=176, height=1, fx=220.0, fy=231.2, cx=87.5, cy=0.0)) as renderer:
         return np.isfinite(renderer.render(states)).any(axis=(1, 2)).mean()

@@ -19,7 +19,7 @@ SCENE_ALT = """The points of one frame in the corridor: blue ones lie on the gre
 
 
 def idea_figure(points: np.ndarray, image: np.ndarray) -> Figure:
-    """The camera's points from above, and the depth image that they make."""
+    """Draw the camera's points from above, and the depth image that they make."""
     figure, (plan, right) = figures.new_figure(1, 2, size=(9.2, 3.3))
     x, _, z = points[np.isfinite(points).all(axis=-1)].T
     plan.scatter(x, z, c=z, s=1.2, cmap="cividis", vmin=0, vmax=10)
@@ -28,21 +28,19 @@ def idea_figure(points: np.ndarray, image: np.ndarray) -> Figure:
     plan.plot([[0, 0], [-4, 4]], [[0, 0], [10, 10]], color="0.6", linewidth=0.8)
     plan.set(title="What the camera delivers: points, seen from above", xlim=(-4.2, 4.2), ylim=(-0.5, 10.3))
     plan.set(xlabel="X, to the right [m]", ylabel="Z, along the optical axis [m]")
-    drawn = figures.depth_image(right, image, "The same points as a depth image, eq. (7)", (0, 10))
-    figures.colour_bar(figure, drawn, right)
-    alt = """Left, the points of one frame from above: two walls of a corridor; right, the depth image made of them."""
+    title = "The same points as a depth image, eq. (7)"
+    figures.colour_bar(figure, figures.depth_image(right, image, title, (0, 10)), right)
+    alt = "Left, the points of one frame from above: two walls of a corridor; right, the depth image made of them."
     return described(figure, alt)
 
 
 def phase_figure(distances: tuple[float, ...]) -> Figure:
-    """Light that goes out and comes back later: its delays on one clock face, and the range that is read off."""
+    """Draw the delays of light that comes back on one clock face, and the range that is read off."""
     figure, (left, right) = figures.new_figure(1, 2, size=(9.2, 3.2))
-    angle = np.linspace(0, 2 * np.pi, 200)
+    angle, repeats = np.linspace(0, 2 * np.pi, 200), MODEL.unambiguous_range
     left.plot(np.cos(angle), np.sin(angle), color="0.75", linewidth=1)
-    repeats = MODEL.unambiguous_range
     true = np.linspace(0, 2.2 * repeats, 2000)
-    read = true % repeats
-    read[1:][np.diff(read) < 0] = np.nan
+    read = np.where(np.diff(true % repeats, prepend=0) < 0, np.nan, true % repeats)
     right.plot(true, read, color="0.4", linewidth=1.6)
     for index, distance in enumerate(distances):
         phase, style = 2 * np.pi * distance / repeats, figures.line_style(index) | {"markersize": 8}
@@ -51,7 +49,7 @@ def phase_figure(distances: tuple[float, ...]) -> Figure:
         right.plot(distance, distance % repeats, **style | {"linestyle": "none"})
     left.set(xlabel="in step with the lamp [-]", ylabel="a quarter turn late [-]", aspect="equal")
     left.set(title="The phase of what comes back", xlim=(-1.35, 1.35), ylim=(-1.2, 1.2))
-    left.legend(title="(lengths only for sight)", loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    left.legend(title="(lengths only for sight)", **figures.BESIDE)
     right.set(title="What the camera reads", xlabel="true range r [m]", ylabel="range that is read [m]")
     alt = """Left, hands of a clock for ranges of 2, 6 and 12 m: 2 and 12 m nearly coincide; right, the range read over
         the true range, a saw that falls back to zero every 10 m."""
@@ -59,11 +57,11 @@ def phase_figure(distances: tuple[float, ...]) -> Figure:
 
 
 def noise_figure(distances: list[float], sigmas_mm: np.ndarray) -> Figure:
-    """Scatter of a wall's depth from frame to frame over its distance."""
+    """Draw how much a wall's depth scatters from frame to frame, over its distance."""
     figure, axes = figures.new_figure(size=(5.6, 2.8))
     axes.plot(distances, sigmas_mm, **figures.line_style(0), label="measured, 20 frames")
-    line = sigmas_mm[0] / distances[0] * np.array([0, distances[-1]])
-    axes.plot([0, distances[-1]], line, color="0.4", linestyle="--", label="in proportion to the distance")
+    ends = np.array([0, distances[-1]])
+    axes.plot(ends, sigmas_mm[0] / distances[0] * ends, "--", color="0.4", label="in proportion to the distance")
     axes.set(title="Noise of a white wall", xlabel="distance [m]", ylabel="one sigma [mm]", ylim=(0, None))
     axes.legend(loc="upper left")
     alt = "The scatter of a wall's depth grows from 7 mm at 2 m to about 29 mm at 8 m, in proportion to the distance."
@@ -71,7 +69,7 @@ def noise_figure(distances: list[float], sigmas_mm: np.ndarray) -> Figure:
 
 
 def recorded_figure(measured: np.ndarray, true: np.ndarray) -> Figure:
-    """One recorded frame, its truth, and the histogram of its errors."""
+    """Draw one recorded frame, its truth, and the histogram of its errors."""
     figure, (left, middle, right) = figures.new_figure(1, 3, size=(10.0, 2.9))
     for axes, image, title in ((left, measured, "Measured"), (middle, true, "True")):
         drawn = figures.depth_image(axes, image, title, (0, 12))
@@ -83,20 +81,16 @@ def recorded_figure(measured: np.ndarray, true: np.ndarray) -> Figure:
 
 
 def two_surfaces_figure(shares: np.ndarray, curves: dict[str, np.ndarray]) -> Figure:
-    """Range that a pixel reads over the share of it that the nearer of two surfaces covers."""
-    figure, axes = figures.new_figure(size=(6.6, 3.0))
-    for index, (name, ranges) in enumerate(curves.items()):
-        axes.plot(shares, ranges, **(figures.line_style(index) | {"markevery": 10}), label=name)
-    axes.set(title="One pixel, two surfaces", xlabel="share of the pixel on the nearer surface [-]")
-    axes.set(ylabel="range that is read [m]", ylim=(0, 10.2))
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    """Draw the range that a pixel reads over the share of it that the nearer of two surfaces covers."""
+    labels = {"xlabel": "share of the pixel on the nearer surface [-]", "ylabel": "range that is read [m]"}
+    labels |= {"title": "One pixel, two surfaces", "ylim": (0, 10.2)}
     alt = """Range read over the pole's share of the pixel: for a wall at 4 or 6 m it falls to 2 m from above; for a
         wall at 8 m it rises beyond 8 m, jumps to zero, and comes to 2 m from below."""
-    return described(figure, alt)
+    return described(figures.curves_figure(shares, curves, (6.6, 3.0), 10, **labels)[0], alt)
 
 
 def counts(values: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Counts in bins, those beyond both ends in the outermost ones, at least 0.5 (for a logarithmic axis)."""
+    """Count in bins, at least 0.5 for a logarithmic axis. The outermost bins hold what lies beyond both ends."""
     return np.maximum(np.histogram(np.clip(values[np.isfinite(values)], edges[0], edges[-1]), edges)[0], 0.5)
 
 
@@ -108,28 +102,22 @@ def error_histogram(axes: Axes):
 
 FREQUENCIES = {"15 MHz (10 m model)": 15e6, "30 MHz (5 m model)": 30e6}
 CONTROLS = [
-    Switch("noise", "noise"),
-    Switch("mixing", "mixing: a pixel has an area, not one ray"),
-    Switch("systematic", "systematic: offset, wiggling, a pattern of the pixels"),
-    Switch("scattering", "scattering: light strays inside the camera"),
-    Switch("drop_outs", "drop-outs: too little or too much light gives no measurement"),
-    Switch("wrapping", "wrapping: ranges repeat after c / 2f"),
+    *[Switch(name, label) for name, (label, _) in FAULTS.items()],
     Slider("x", "camera at x [m]", 0.0, 8.0, 0.0, 0.1),
     Choice("frequency", "modulation", tuple(FREQUENCIES), "15 MHz (10 m model)"),
 ]
 
 
 def faults_panel() -> Panel:
-    """Switch the sensor's faults on one by one; see the depth image, its error, and the histograms of both."""
+    """Show the depth image, its error, and the histograms of both, while switches add the sensor's faults."""
     camera = DepthCamera.sr4000().resized(88, 72)
     figure, ((seen, off), (depths, errors)) = figures.new_figure(2, 2, size=(9.4, 5.2))
-    image = figures.depth_image(seen, np.zeros(camera.shape), "Depth image, measured", (0, 12))
-    title = "Measured - true (hatched: no measurement)"
-    error_image = figures.depth_image(off, np.zeros(camera.shape), title, (-0.1, 0.1))
+    blank, ones = np.zeros(camera.shape), np.ones(len(DEPTHS) - 1)
+    image = figures.depth_image(seen, blank, "Depth image, measured", (0, 12))
+    error_image = figures.depth_image(off, blank, "Measured - true (hatched: no measurement)", (-0.1, 0.1))
     error_image.set_cmap(colormaps["PuOr"].with_extremes(bad=(1, 1, 1, 0)))  # white at zero, clear without error
     figures.colour_bar(figure, image, seen)
     figures.colour_bar(figure, error_image, off, "error [m], cut at 0.1")
-    ones = np.ones(len(DEPTHS) - 1)
     true_steps = depths.stairs(ones, DEPTHS, color=figures.BLACK, linewidth=1.4, label="true")
     steps = depths.stairs(ones, DEPTHS, fill=True, color=figures.ORANGE, label="measured", zorder=1)
     depths.set(title="Histogram of the depths", xlabel="depth Z [m]", ylabel="pixels [-]", yscale="log")
@@ -147,18 +135,18 @@ def faults_panel() -> Panel:
         for stairs, values, edges in ((steps, depth, DEPTHS), (true_steps, true, DEPTHS), (error_steps, error, ERRORS)):
             stairs.set_data(counts(values, edges))
         amount = np.abs(error[np.isfinite(error)])
-        lines = [
-            f"no measurement: {np.isnan(depth).mean():.1%} of the pixels",
+        summary = (
+            f"no measurement: {np.isnan(depth).mean():.1%} of the pixels\n"
             f"of the others: error at most 5 cm: {(amount <= 0.05).mean():.1%}; more than 1 m: "
-            f"{(amount > 1).mean():.1%}; median |error| {np.median(amount) * 1000:.1f} mm",
-        ]
+            f"{(amount > 1).mean():.1%}; median |error| {np.median(amount) * 1000:.1f} mm"
+        )
         names = ", ".join(name.replace("_", "-") for name in FAULTS if name in faults) or "none"
         alt = f"""Depth image of a corridor from x = {x:.1f} m with these faults of the camera: {names}; its difference
-            from the truth; histograms of depths and errors. {" ".join(lines)}"""
-        return Drawing(live.png(), alt, "\n".join(lines))
+            from the truth; histograms of depths and errors. {summary}"""
+        return Drawing(live.png(), alt, summary)
 
-    everything = dict.fromkeys(FAULTS, True)
-    return Panel("04 the faults one by one", CONTROLS, draw, actions={"All faults": lambda values: everything})
+    actions = {"All faults": lambda values: dict.fromkeys(FAULTS, True)}
+    return Panel("04 the faults one by one", CONTROLS, draw, actions=actions)
 
 
 PANELS = {"04 the faults one by one": faults_panel}

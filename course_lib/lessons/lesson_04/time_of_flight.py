@@ -13,18 +13,20 @@ from course_lib.paths import data_path
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.sensors.time_of_flight import Frame, TimeOfFlightCamera, TimeOfFlightModel
+from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
 
 MODEL = TimeOfFlightModel()
-# Each fault of the camera, and the parameters of `TimeOfFlightModel` that switch it off.
-FAULTS: dict[str, dict[str, float]] = {
-    "noise": {"shot_noise": 0.0, "dark_noise": 0.0},
-    "mixing": {"sub_rays": 1},
-    "systematic": {"offset": 0.0, "wiggling": 0.0, "fixed_pattern": 0.0},
-    "scattering": {"scattered_share": 0.0},
-    "drop_outs": {"least_amplitude": 1e-9, "greatest_amplitude": np.inf},
-    "wrapping": {},  # no parameter: `capture` adds the lost multiples of c / 2f
-}
+# Each fault of the camera: how the panel names it, and the parameters of `TimeOfFlightModel` that switch it off.
+FAULTS: dict[str, tuple[str, dict[str, float]]] = {
+    "noise": ("noise", {"shot_noise": 0, "dark_noise": 0}),
+    "mixing": ("mixing: a pixel has an area, not one ray", {"sub_rays": 1}),
+    "systematic": ("systematic: offset, wiggling, a pattern of the pixels",
+                   {"offset": 0, "wiggling": 0, "fixed_pattern": 0}),
+    "scattering": ("scattering: light strays inside the camera", {"scattered_share": 0}),
+    "drop_outs": ("drop-outs: too little or too much light gives no measurement",
+                  {"least_amplitude": 1e-9, "greatest_amplitude": np.inf}),
+    "wrapping": ("wrapping: ranges repeat after c / 2f", {}),  # `capture` adds the lost multiples of c / 2f
+}  # fmt: skip
 CORRIDOR = BoxWorld(
     [
         Box((-1.0, -1.5, -0.2), (12.0, 1.5, 0.0), 0.38),  # floor
@@ -45,64 +47,57 @@ CORRIDOR = BoxWorld(
 EYE_HEIGHT = 1.2  # metres
 
 
-def capture(
-    x: float, faults: Set[str], camera: DepthCamera, frequency: float = MODEL.frequency
-) -> tuple[np.ndarray, np.ndarray, Frame]:
-    """Measured depth, true depth `(H, W)` [m] and the camera's frame, from (x, 0, 1.2 m), with these faults alone.
+def capture(x: float, faults: Set[str], camera: DepthCamera, frequency: float = MODEL.frequency) -> tuple:
+    """Return measured depth, true depth `(H, W)` [m] and the `Frame`, from (x, 0, 1.2 m), with these faults alone.
 
-    NaN is no measurement, inf is nothing there. Without "wrapping" the multiple of c / 2f that the camera cannot know
-    is added: as if it measured with two frequencies.
+    NaN is no measurement, inf is nothing there. Without "wrapping" we add the lost multiple of c / 2f.
     """
-    changes = {key: value for name, off in FAULTS.items() if name not in faults for key, value in off.items()}
-    # The width of the scattered light is told in the pixels of the full image.
+    changes = {key: value for name, (_, off) in FAULTS.items() if name not in faults for key, value in off.items()}
+    # The model gives the width of the scattered light in pixels of the full image.
     width = MODEL.scatter_width * camera.width / DepthCamera.sr4000().width
     model = dataclasses.replace(MODEL, frequency=frequency, scatter_width=width, **changes)
     tof, state = TimeOfFlightCamera(camera, model, np.random.default_rng(0)), np.array([x, 0, EYE_HEIGHT, 0, 0, 0])
-    frame = tof.capture(CORRIDOR, state, np.random.default_rng(1))
-    depth = frame.depth.astype(np.float64)
+    frame, rays = tof.capture(CORRIDOR, state, np.random.default_rng(1)), camera.rays()
+    depth, repeats = frame.depth.astype(np.float64), model.unambiguous_range
     if "wrapping" not in faults:
-        turns = np.round((frame.nearest - frame.range) / model.unambiguous_range)
-        seen = np.isfinite(turns)
-        depth[seen] += (turns * model.unambiguous_range / np.linalg.norm(camera.rays(), axis=-1))[seen]
-    return depth, CORRIDOR.cast(state[:3], camera.rays() @ BODY_FROM_OPTICAL.T).distance, frame
+        lost = np.round((frame.nearest - frame.range) / repeats) * repeats / np.linalg.norm(rays, axis=-1)
+        depth += np.where(np.isfinite(lost), lost, 0)
+    return depth, CORRIDOR.cast(state[:3], rays @ BODY_FROM_OPTICAL.T).distance, frame
 
 
 def returns(x: float, camera: DepthCamera) -> tuple[np.ndarray, np.ndarray]:
-    """Range along the ray [m] and reflectivity times cosine of incidence, `(H, W)` each, at the pixels' centres."""
+    """Return range along the ray [m] and reflectivity times cosine, `(H, W)` each, at the pixels' centres."""
     rays = camera.rays() @ BODY_FROM_OPTICAL.T
     hits = CORRIDOR.cast(np.array([x, 0, EYE_HEIGHT]), rays / np.linalg.norm(rays, axis=-1, keepdims=True))
     return hits.distance.astype(np.float64), np.where(hits.face >= 0, CORRIDOR.reflectivity[hits.face] * hits.cosine, 0)
 
 
 def wall_frames(distance: float, n_frames: int, camera: DepthCamera, seed: int = 0) -> np.ndarray:
-    """`(n, H, W)` depth images [m] of a white wall across the view, by one camera with all its faults."""
+    """Return `(n, H, W)` depth images [m] of a white wall across the view, by one camera with all its faults."""
     rng = np.random.default_rng(seed)
-    world = BoxWorld([Box((distance, -9.0, -9.0), (distance + 0.1, 9.0, 9.0), 0.72)])
-    tof = TimeOfFlightCamera(camera, MODEL, rng)
+    tof, wall = TimeOfFlightCamera(camera, MODEL, rng), Box((distance, -9.0, -9.0), (distance + 0.1, 9.0, 9.0), 0.72)
+    world = BoxWorld([wall])
     return np.stack([tof.capture(world, np.zeros(6), rng).depth for _ in range(n_frames)])
 
 
 def true_depths(recording: DepthSequence, camera: DepthCamera, frames: range) -> np.ndarray:
-    """`(n, H, W)` true depths [m] of recorded frames: the corridor as it was, people and all, from the true poses."""
+    """Return `(n, H, W)` true depths [m] of recorded frames: the corridor as it was, with its people."""
     world = SceneMap.load(data_path("corridor/true_world.ply"))  # no filter ever sees it
     with DepthRenderer(world, camera.with_clip_planes(0.1, 40.0), exact=True) as renderer:
         return renderer.render(state_from_optical_pose(recording.camera_to_world[list(frames)]))
 
 
 def kinds_of(measured: np.ndarray, true: np.ndarray) -> dict[str, np.ndarray]:
-    """Which pixels have which kind of error: one mask each. Wrapped: about one whole c / 2f too near."""
+    """Return a mask of the pixels for each kind of error. Wrapped pixels are about one whole c / 2f too near."""
     error, repeats = measured - true, MODEL.unambiguous_range
-    kinds = {
-        "no measurement": np.isnan(measured),
-        "within 5 cm": np.abs(error) <= 0.05,
-        "5 to 30 cm off": (np.abs(error) > 0.05) & (np.abs(error) <= 0.3),
-        "wrapped": np.abs(error + repeats) < 0.1 * repeats,
-    }
+    off = np.abs(error)
+    kinds = {"no measurement": np.isnan(measured), "within 5 cm": off <= 0.05}
+    kinds |= {"5 to 30 cm off": (off > 0.05) & (off <= 0.3), "wrapped": np.abs(error + repeats) < 0.1 * repeats}
     return kinds | {"other, mostly edges": ~np.any(list(kinds.values()), axis=0)}
 
 
 def on_a_surface(points: np.ndarray, true: np.ndarray, camera: DepthCamera) -> float:
-    """Share of points `(n, 3)` (optical frame, metres) within 0.1 m of a point that is truly seen."""
+    """Return the share of points `(n, 3)` (optical frame, metres) within 0.1 m of a point that is truly seen."""
     surface = camera.points(np.where(np.isfinite(true), true, np.nan)).reshape(-1, 3)
     distances, _ = cKDTree(surface[np.isfinite(surface).all(axis=1)]).query(points)
     return float(np.mean(distances <= 0.1))

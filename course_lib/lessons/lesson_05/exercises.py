@@ -2,31 +2,14 @@
 
 import numpy as np
 
-from course_lib.geometry import pose_matrix, wrap_angle
+from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.exercises import Exercise
-from course_lib.lessons.lesson_04.exercises import nearest_of  # noqa: F401 (a mistake's edit uses it)
-
-# 05.1: the spread after t frames
 
 
 def spread_after(spread0, sigma, t):
     """Standard deviations (6,) after t frames of noise sigma (6,), from spread0 (6,) at the start."""
     # Variances add, that of the start once, that of a step t times.
     return np.sqrt(spread0**2 + t * sigma**2)
-
-
-def spreads(rng: np.random.Generator) -> tuple:
-    spread0, sigma = rng.uniform(0.05, 0.6, 6), rng.uniform(0.02, 0.3, 6)
-    spread0[rng.integers(6)] = 0.0
-    sigma[rng.integers(6)] = 0.0
-    return spread0, sigma, int(rng.integers(2, 60))
-
-
-def no_frame(rng: np.random.Generator) -> tuple:
-    return rng.uniform(0.1, 0.5, 6), rng.uniform(0.1, 0.5, 6), 0
-
-
-# 05.2: noise along the particle's own axes
 
 
 def propagate_own_axes(particles, sigma_forward, sigma_left, draws):
@@ -46,20 +29,10 @@ def particles_and_draws(rng: np.random.Generator) -> tuple:
 
 
 def four_headings(rng: np.random.Generator) -> tuple:
-    """Headings along the axes and at the seam, one step forward and one to the left."""
+    """Make headings along the axes and at the seam, one step forward and one to the left."""
     particles = np.tile([10.0, 0.5, 1.0, 0.1, -0.2, 0.0], (8, 1))
     particles[:, 5] = np.tile(np.deg2rad([0, 90, -90, -180]), 2)
     return particles, 0.2, 0.05, np.repeat(np.eye(2), 4, axis=0)
-
-
-def by_whole_rotation(particles, sigma_forward, sigma_left, draws, up=1):
-    steps = np.column_stack([draws * [sigma_forward, sigma_left], 0 * draws[:, 0]])
-    moved = particles.copy()
-    moved[:, :3] += np.einsum("nab,nb->na", pose_matrix(particles)[:, :3, :3], steps) * [1, 1, up]
-    return moved
-
-
-# 05.3: how many particles are near a state
 
 
 def share_near(particles, state, radius, angle):
@@ -71,8 +44,7 @@ def share_near(particles, state, radius, angle):
 
 
 def cloud_and_state(rng: np.random.Generator) -> tuple:
-    """A cloud about as wide as radius and angle, at another height than the state, mostly about the wrap; a few look
-    the other way, and at times one is exactly `radius` away."""
+    """Make a cloud about as wide as radius and angle, mostly about the wrap. At times one is just `radius` away."""
     # Eighths of a metre are exact in floating point, so that a distance can equal the radius.
     radius, angle = rng.choice([0.125, 0.25]), np.deg2rad(rng.uniform(5, 15))
     yaw = rng.choice([np.pi, rng.uniform(-2, 2)], p=[0.8, 0.2])
@@ -87,13 +59,8 @@ def cloud_and_state(rng: np.random.Generator) -> tuple:
     return particles, state, radius, angle
 
 
-def nobody_near(rng: np.random.Generator) -> tuple:
-    particles = rng.normal([10, 0, 1, 0, 0, 0], 0.2, (12, 6))
-    return particles, np.array([20.0, 0, 1, 0, 0, 0]), 0.5, 0.2
-
-
 def a_radius_and_an_angle_of_0(rng: np.random.Generator) -> tuple:
-    """Only particles at the state itself are near, and they are."""
+    """Only the two particles at the state itself are near."""
     particles = np.tile([10.0, 0.5, 1.0, 0, 0, 0.5], (4, 1))
     particles[1, 0] += 0.25
     particles[2, 5] += 0.25
@@ -103,9 +70,6 @@ def a_radius_and_an_angle_of_0(rng: np.random.Generator) -> tuple:
 def yaws_at_the_seam(rng: np.random.Generator) -> tuple:
     state = np.array([10.0, 0.5, 1.0, 0, 0, np.deg2rad(-179)])
     return state[None] * [1, 1, 1, 1, 1, -1], state, 0.1, np.deg2rad(5)
-
-
-# 05.4: one step of the Bayes filter on cells
 
 
 def bayes_step(bel, moves, doors, seen, hit, false_alarm):
@@ -121,31 +85,8 @@ def bayes_step(bel, moves, doors, seen, hit, false_alarm):
 
 def corridor_with_doors(rng: np.random.Generator, n_moves: int = 3) -> tuple:
     n = int(rng.integers(8, 15))
-    doors, moves = rng.permutation(np.arange(n) < 3), rng.dirichlet(np.array([2, 5, 2, 2, 2])[:n_moves])
+    doors, moves = rng.permutation(np.arange(n) < 3), rng.dirichlet(np.array([2, 5, 2])[:n_moves])
     return rng.dirichlet(np.ones(n)), moves, doors, rng.random() < 0.5, rng.uniform(0.6, 0.95), rng.uniform(0.05, 0.3)
-
-
-def five_moves(rng: np.random.Generator) -> tuple:
-    return corridor_with_doors(rng, n_moves=5)
-
-
-def at_rest(rng: np.random.Generator) -> tuple:
-    return corridor_with_doors(rng, n_moves=1)
-
-
-def more_moves_than_cells(rng: np.random.Generator) -> tuple:
-    return rng.dirichlet(np.ones(4)), rng.dirichlet(np.ones(7)), np.arange(4) == 2, False, 0.9, 0.2
-
-
-def nearly_at_the_end(rng: np.random.Generator) -> tuple:
-    return np.array([0, 0, 0, 0.3, 0.7]), np.array([0.1, 0.8, 0.1]), np.arange(5) == 4, True, 0.8, 0.1
-
-
-def a_sure_sensor(rng: np.random.Generator) -> tuple:
-    return np.full(6, 1 / 6), np.array([0.0, 1.0]), np.arange(6) % 3 == 0, False, 1.0, 0.0
-
-
-# 05.5: the least noise that keeps up
 
 
 def min_sigma(step, n, frames, p):
@@ -157,185 +98,116 @@ def min_sigma(step, n, frames, p):
     return step / norm.ppf((1 - one_frame) ** (1 / n))
 
 
-def wagons(rng: np.random.Generator) -> tuple:
-    return rng.uniform(0.02, 0.3), int(rng.integers(50, 2000)), int(rng.integers(20, 500)), rng.uniform(0.6, 0.99)
-
-
-def one_frame(rng: np.random.Generator) -> tuple:
-    return 0.1, 20, 1, 0.9
-
-
 # fmt: off
 EXERCISES = [
-    Exercise("05.1", spread_after, spreads, "warm-up", cases=[no_frame], mistakes="""
+    Exercise("05.1", spread_after, lambda rng: (*rng.uniform(0, 0.6, (2, 6)), rng.integers(2, 60)), "warm-up", cases={
+        "no frame": lambda rng: (*rng.uniform(0.1, 0.5, (2, 6)), 0),
+        "no noise in yaw": lambda rng: (rng.uniform(0.1, 0.5, 6), rng.uniform(0.1, 0.5, 6) * [1, 1, 1, 1, 1, 0], 9),
+    }, mistakes="""
         ... => return spread0 + np.sqrt(t) * sigma
-        ... => return spread0 + sigma
         You add standard deviations. Independent things add their variances: square, add, take the root.
         spread0**2 + t * sigma**2 => t * sigma**2
         You forgot that the cloud has a spread at the start. Its variance counts, too.
         t * sigma**2 => (t * sigma) ** 2
         Your noise grows with t. Each frame adds one variance, so the variance grows with t, not its square.
         ... => return spread0 + t * sigma
-        You let all steps point the same way. They are random: variances add, not standard deviations.
-        spread0**2 + t * sigma**2 => t * (spread0**2 + sigma**2)
-        You count the spread at the start in every frame. It is there once.
+        In yours all steps point the same way. They are random: variances add, not standard deviations.
         t * sigma**2 => sigma**2
         That is the spread after one frame. Where is t?
         t * sigma**2 => max(t - 1, 0) * sigma**2
-        ... => with np.errstate(all="ignore"): return np.sqrt(spread0**2 + (t - 1) * sigma**2)
-        ... => return np.sqrt(np.maximum(spread0**2 + (t - 1) * sigma**2, 0))
         t * sigma**2 => (t + 1) * sigma**2
-        You count one frame too many or too few: after t frames there were t steps, the start is none.
-        spread0**2 => spread0
-        sigma**2 => sigma
-        **2 =>
-        You add standard deviations under the root. Square both of them first: they are no variances yet.
-        ... => return np.maximum(spread0, np.sqrt(t) * sigma)
-        You take the greater of the two. Both spread the cloud: their variances add.
+        You count one frame too many or too few. After t frames there were t steps; the start is no step.
     """),
-    Exercise("05.2", propagate_own_axes, particles_and_draws, cases=[four_headings], mistakes="""
-        particles[:, 5] => particles[:, 4]
-        particles[:, 5] => particles[:, 3]
-        You turn the steps by the roll or the pitch. The heading is the yaw, the last of the six.
+    Exercise("05.2", propagate_own_axes, particles_and_draws, cases={"four headings": four_headings}, mistakes="""
         particles[:, 5] => 0 * particles[:, 5]
         You add forward to x and left to y. That holds for yaw 0 only: turn the step by the particle's yaw.
         particles[:, 5] => -particles[:, 5]
-        Your steps turn the wrong way: from the body to the world, by +yaw.
+        Your steps turn the wrong way. From the body to the world you turn by +yaw.
         particles[:, 5] => particles[0, 5]
-        particles[:, 5] => particles[:, 5].mean()
-        All your particles step in the direction of the first one, or in a mean one. Each has a yaw of its own.
+        All your particles step in the direction of the first one. Each has a yaw of its own.
         forward, left, yaw => left, forward, yaw
         draws[:, 0], sigma_left * draws[:, 1] => draws[:, 1], sigma_left * draws[:, 0]
-        You swapped forward and left: the first column of `draws` is forward.
-        - left * np.sin(yaw) => + left * np.sin(yaw)
-        + left * np.cos(yaw) => - left * np.cos(yaw)
+        You swapped forward and left. The first column of `draws` is forward.
         sigma_left * => -sigma_left *
-        One sign of the step to the left is wrong: left is forward turned by +90 degrees, (-sin yaw, cos yaw).
+        The sign of the step to the left is wrong. Left is forward turned by +90 degrees, (-sin yaw, cos yaw).
         particles[:, 5] => np.deg2rad(particles[:, 5])
-        particles[:, 5] => np.rad2deg(particles[:, 5])
         The yaw of a particle is in radians already, and np.sin and np.cos take radians.
-        sigma_left * => 0 *
-        - left * np.sin(yaw) => and also + left * np.cos(yaw) => + left
         - left * np.sin(yaw) => and also forward * np.sin(yaw) + left * np.cos(yaw) => left * np.sin(yaw)
         Each of the two steps has a part in x *and* a part in y: four products in all.
-        sigma_forward * => sigma_forward**2 * and also sigma_left * => sigma_left**2 *
         sigma_forward * => and also sigma_left * =>
-        A step is a standard normal draw times sigma: not times sigma squared, and not about a metre long.
-        particles[:, 5] => np.pi / 2 - particles[:, 5]
-        particles[:, 5] => np.pi / 2 - particles[:, 5] and also sigma_left * => -sigma_left *
-        Sine and cosine have changed places. At yaw 0 forward is along x: so x has the cosine.
+        Your steps are about a metre long. A step is a standard normal draw times sigma.
         return moved => return moved - particles
         These are the steps alone. Add them to the particles.
-        ... => return by_whole_rotation(particles, sigma_forward, sigma_left, draws)
-        ... => return by_whole_rotation(particles, sigma_forward, sigma_left, draws, up=0)
-        Roll and pitch bend your steps, or make them leave the floor. Only the yaw turns them; z stays.
     """),
-    Exercise("05.3", share_near, cloud_and_state, cases=[
-        yaws_at_the_seam, nobody_near, a_radius_and_an_angle_of_0,
-    ], mistakes="""
-        5] => 3]
+    Exercise("05.3", share_near, cloud_and_state, cases={
+        "yaws at the seam": yaws_at_the_seam,
+        "nobody near": lambda rng: (rng.normal([10, 0, 1, 0, 0, 0], 0.2, (12, 6)), np.eye(6)[0] * 20, 0.5, 0.2),
+        "a radius and an angle of 0": a_radius_and_an_angle_of_0,
+    }, mistakes="""
         5] => 4]
-        particles[:, 5] - state[5])) => particles[:, 3:] - state[3:])).max(axis=1)
-        Compare the yaw, the last of the six, and nothing else: the task ignores roll and pitch.
-        <= radius => < radius
-        <= angle => < angle
-        *At most* means <=: whoever is exactly `radius` away is near, and so is a twin, even with an angle of 0.
-        wrap_angle(particles[:, 5] - state[5]) => particles[:, 5] - state[5]
-        Wrap the difference of the yaws: 179 and -179 degrees are 2 degrees apart, not 358.
-        np.abs(wrap_angle(particles[:, 5] - state[5])) => wrap_angle(np.abs(particles[:, 5] - state[5]))
+        Compare the yaw, the last of the six, and nothing else. The task ignores roll and pitch.
         np.abs(wrap_angle(particles[:, 5] - state[5])) => (particles[:, 5] - state[5]) % (2 * np.pi)
-        Wrap first, to -pi ... pi; then take the absolute value, so that small turns to the right are small.
-        wrap_angle(particles[:, 5] - state[5]) => np.abs(particles[:, 5]) - np.abs(state[5])
-        You compare the sizes of two yaws: 20 and -20 degrees are not one heading. Wrap their difference.
+        Wrap to -pi ... pi, then take the absolute value, so that small turns to the right are small.
         near = np.hypot( => near = np.hypot(particles[:, 2] - state[2], np.hypot( and also <= radius => ) <= radius
         Your distance includes z. Near on the floor means x and y only.
         near & turned => near | turned
         near & turned => near
-        near & turned => turned
-        Near in place *and* in heading: yours may be near in one of them alone.
+        Near in place *and* in heading: in yours one of them is enough.
         np.mean => np.sum
         You count the particles. A share is that count divided by their number.
         return => return 1 -
         That is the share of the particles that are *not* near.
-        np.hypot(particles[:, 0] - state[0], particles[:, 1] - state[1]) => np.abs(particles - state)[:, :2].max(axis=1)
         np.hypot(particles[:, 0] - state[0], particles[:, 1] - state[1]) => np.abs(particles - state)[:, :2].sum(axis=1)
         <= radius => ** 2 <= radius
-        The distance is the root of dx^2 + dy^2: not its square, not dx + dy, not each of them alone.
+        The distance is the root of dx^2 + dy^2: not its square, and not dx + dy.
         np.mean(near & turned) => np.mean(near) * np.mean(turned)
         You multiply two shares. Ask of each particle whether it passes both tests, then take one mean.
         np.mean(near & turned) => np.sum(near & turned) / max(np.sum(near), 1)
-        You divide by the particles that are near in place. The share is one of all particles.
+        You divide by the particles that are near in place. The task asks for a share of all particles.
     """),
-    Exercise("05.4", bayes_step, corridor_with_doors, cases=[
-        nearly_at_the_end, a_sure_sensor, five_moves, more_moves_than_cells, at_rest,
-    ], mistakes="""
+    Exercise("05.4", bayes_step, corridor_with_doors, cases={
+        "nearly at the end": lambda rng: (*np.array([[0, 0.3, 0.7], [0.1, 0.9, 0]]), np.arange(3) == 2, True, 0.8, 0.1),
+        "a sure sensor": lambda rng: (np.full(6, 1 / 6), np.array([0, 1.0]), np.arange(6) % 3 == 0, False, 1.0, 0.0),
+        "more moves than cells": lambda rng: (np.ones(4) / 4, np.ones(7) / 7, np.arange(4) == 2, False, 0.9, 0.2),
+        "at rest": lambda rng: corridor_with_doors(rng, n_moves=1),
+    }, mistakes="""
         np.minimum(np.arange(len(bel)) + k, len(bel) - 1) => (np.arange(len(bel)) + k) % len(bel)
-        In yours the corridor is a ring: what passes its end comes in at its start. Here it stops at the end.
+        Your corridor is a ring: what passes its end comes in at its start. Here it stops at the end.
         p * bel) => p * bel * (np.arange(len(bel)) + k < len(bel)))
-        What would pass the last cell gets lost in yours, and dividing by the sum hides it. It stops there.
+        You lose what would pass the last cell, and dividing by the sum hides it. It stops there.
         / corrected.sum() =>
-        / corrected.sum() => / corrected.max()
         Your belief does not sum to 1: what is eta for?
         ... => bel = bayes_step(bel, [1], doors, seen, hit, false_alarm); return bayes_step(bel, moves, doors, 1, 1, 1)
-        You look first and move then. The picture was taken after the move.
+        You look first and move then. The sensor reports after the move.
         (p_door if seen else 1 - p_door) => p_door
-        (p_door if seen else 1 - p_door) => (1 - p_door)
-        (p_door if seen else 1 - p_door) => (p_door if seen else 1)
-        `seen` says whether a door was seen. Not seeing one tells as well: it has a probability of its own.
+        `seen` says whether a door was seen. If none was seen, that tells you something, too.
         np.where(doors, => np.where(doors == seen, and also p_door if seen else 1 - p_door => p_door
-        np.where(doors, hit, false_alarm) => np.where(doors == seen, hit, 1 - hit) and also if seen else 1 - p_door =>
-        Four cases of door and report, two numbers: where no door is, seeing none has 1 - false_alarm.
-        ... => return bayes_step(bel[::-1], moves, doors[::-1], seen, hit, false_alarm)[::-1]
-        Your wagon rolls backwards: moves[k] is the probability of k cells *forward*.
+        Door or none, seen or not: four cases, two numbers. Where no door is, seeing none has 1 - false_alarm.
         ... => return bayes_step(bel, moves, doors, 1, 1, 1)
-        That is the prediction alone. The correction by what was seen is missing.
-        ... => return bayes_step(bel, [1], doors, seen, hit, false_alarm)
-        That is the correction alone. The wagon has moved before.
-        enumerate(moves) => enumerate(moves[:3])
-        enumerate(moves) => enumerate(moves[: len(bel)])
-        Not only the first three moves: `moves` may have any length, and be longer than the corridor.
+        That is the prediction alone. The correction by the report of the sensor is missing.
         np.add.at(predicted, target, p * bel) => predicted[target] += p * bel
-        `a[index] += ...` counts an index that comes twice only once: use np.add.at, or loop over cells.
+        `a[index] += ...` counts an index that comes twice only once. Use np.add.at, or loop over cells.
         np.minimum(np.arange(len(bel)) + k, len(bel) - 1) => (c := np.arange(len(bel))) + k * (c + k < len(bel))
-        Whoever would pass the end stays where he was in yours. He rolls on and stops in the last cell.
-        + k, => + k + 1,
-        You roll one cell too far: moves[0] is the probability of staying.
+        In yours a wagon that would pass the end stays where it was. It rolls on and stops in the last cell.
     """),
-    Exercise("05.5", min_sigma, wagons, "challenge", cases=[one_frame], mistakes="""
+    Exercise("05.5", min_sigma, lambda rng: (
+        rng.uniform(0.02, 0.3), int(rng.integers(50, 2000)), int(rng.integers(20, 500)), rng.uniform(0.6, 0.99),
+    ), "challenge", cases={"one frame": lambda rng: (0.1, 20, 1, 0.9)}, mistakes="""
         one_frame = p ** (1 / frames) => one_frame = p
         That holds for one frame. It must go well in *every* one of them: multiply the probabilities.
         (1 - one_frame) ** (1 / n) => (1 - p) ** (1 / (n * frames))
         Yours reaches the step in at least one of all frames. It has to in every single one.
-        p ** (1 / frames) => 1 - (1 - p) / frames
-        Nearly: adding up the frames' risks is a bound. The frames are independent: multiply.
         (1 - one_frame) ** (1 / n) => one_frame ** (1 / n)
         You ask that *all* particles stay below the step. One that reaches it is enough: 1 - Phi^n.
         (1 - one_frame) ** (1 / n) => 1 - one_frame ** (1 / n)
         You ask that *every* particle makes the step. One of the n is enough.
-        (1 - one_frame) ** (1 / n) => (1 - one_frame) / n
-        (1 - one_frame) ** (1 / n) => 1 - one_frame / n
-        (1 - one_frame) ** (1 / n) => 1 - (1 - one_frame) / n
-        Phi^n is no product with n: undo a power by a root.
         p ** (1 / frames) => p**frames
         You raise p to the power of the frames. p is the probability for all of them: undo that power.
         (1 - one_frame) ** (1 / n) => 1 - one_frame
-        (1 - one_frame) ** (1 / n) => one_frame
         That is a sigma for one particle. Where is n? One minus q is Phi to the power of n.
-        p ** (1 => (1 - p) ** (1
-        You took p for the probability of failing.
         (1 - one_frame) ** (1 / n) => (1 + (1 - one_frame) ** (1 / n)) / 2
-        A step backwards of the same size does not help: only one side of the normal distribution counts.
-        step / norm => norm
-        step / norm => step * norm
-        norm.ppf says how many sigmas the farthest step surely reaches. Sigma times that number shall be the step.
+        A step backwards of the same size does not help. Only one side of the normal distribution counts.
         norm.ppf((1 - one_frame) ** (1 / n)) => np.sqrt(2 * np.log(n))
-        norm.ppf((1 - one_frame) ** (1 / n)) => -nearest_of(n)[0]
         That keeps up in the *mean*, as in *Measure*. With probability p for all frames it takes more: use p.
-        ... => return round(min_sigma(step, n, frames, p), 2)
-        ... => return round(min_sigma(step, n, frames, p), 3)
-        ... => return round(min_sigma(step, n, frames, p), 4)
-        ... => return np.ceil(1000 * min_sigma(step, n, frames, p)) / 1000
-        ... => return np.ceil(10000 * min_sigma(step, n, frames, p)) / 10000
-        Rounded, or searched in steps: sigma can be computed. Round what you print, not what the function gives.
     """),
 ]

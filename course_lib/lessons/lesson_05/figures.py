@@ -16,13 +16,13 @@ SCENE_ALT = """Two clouds of arrowheads in a corridor: a small black one, all ne
     metres long, not quite one wide, flat as a sheet of paper, with headings that fan out."""
 
 
-def draw_plan(axes: Axes, xlim: tuple[float, float], ylim: tuple[float, float], title: str) -> None:
+def draw_plan(axes: Axes, xlim: tuple, ylim: tuple, title: str) -> None:
     draw_walls(axes, 2, 1.0)
     axes.set(xlim=xlim, ylim=ylim, aspect="equal", title=title, xlabel="x along the corridor [m]", ylabel="y [m]")
 
 
 def clouds_figure(clouds: np.ndarray, frames: list[int]) -> Figure:
-    """One cloud at several frames, from above, one picture below the other."""
+    """Draw one cloud at several frames, from above, one picture below the other."""
     figure, axes = figures.new_figure(len(frames), 1, size=(8.6, 1.5 * len(frames) + 0.3))
     x, y = clouds[0, 0, :2]
     for a, frame in zip(axes, frames, strict=True):
@@ -37,7 +37,7 @@ def clouds_figure(clouds: np.ndarray, frames: list[int]) -> Figure:
 
 
 def beliefs_figure(beliefs: dict[str, np.ndarray], doors: list[int], shares: dict[str, np.ndarray]) -> Figure:
-    """Beliefs over the cells of a corridor as bars, doors marked below; dots: the shares of a particle set."""
+    """Draw beliefs over the cells of a corridor as bars, doors below them, and the shares of a particle set as dots."""
     figure, axes = figures.new_figure(2, 2, size=(9.4, 4.4))
     for a, (title, belief) in zip(axes.flat, beliefs.items(), strict=True):
         a.bar(np.arange(len(belief)), belief, color=figures.SKY_BLUE, label="belief, exact")
@@ -53,21 +53,19 @@ def beliefs_figure(beliefs: dict[str, np.ndarray], doors: list[int], shares: dic
 
 
 def spread_figure(frames: np.ndarray, spreads: dict[str, np.ndarray], sigma: float) -> Figure:
-    """Measured spread over the frames, and sqrt(t) sigma."""
-    figure, axes = figures.new_figure(size=(6.4, 3.0))
-    for index, (name, spread) in enumerate(spreads.items()):
-        axes.plot(frames, spread, **(figures.line_style(index) | {"markevery": 10}), label=name)
+    """Draw the measured spread over the frames, and sqrt(t) sigma."""
+    labels = {"xlabel": "frame t [-]", "ylabel": "spread in x [m]", "ylim": (0, 2.2 * sigma * np.sqrt(frames[-1]))}
+    labels["title"] = "Spread of a cloud that only moves"
+    figure, axes = figures.curves_figure(frames, spreads, (6.4, 3.0), 10, **labels)
     axes.plot(frames, sigma * np.sqrt(frames), color="black", linewidth=1.0, label="closed form, sqrt(t) sigma")
     axes.plot(frames, sigma * frames, color="0.5", linestyle=":", linewidth=1.4, label="if steps added up, t sigma")
-    axes.set(title="Spread of a cloud that only moves", xlabel="frame t [-]", ylabel="spread in x [m]")
-    axes.set(ylim=(0, 2.2 * sigma * np.sqrt(frames[-1])))
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
+    axes.legend(**figures.BESIDE, fontsize=8)
     alt = "Spread over 100 frames: 2000 particles follow the root of t, ten particles stray from it."
     return described(figure, alt)
 
 
 def trade_figure(sigma_x: np.ndarray, errors: np.ndarray, threshold: float, expected: np.ndarray) -> Figure:
-    """Distance to the nearest particle over sigma, `errors` (sigmas, runs): too small loses, too large thins."""
+    """Draw the distance to the nearest particle over sigma, for `errors` (sigmas, runs)."""
     figure, axes = figures.new_figure(size=(6.8, 3.2))
     axes.loglog(sigma_x, np.median(errors, axis=1), **figures.line_style(0), label="mean over the frames, median run")
     axes.loglog(sigma_x, errors, ".", color=figures.BLUE, markersize=3)
@@ -75,14 +73,15 @@ def trade_figure(sigma_x: np.ndarray, errors: np.ndarray, threshold: float, expe
     axes.axvline(threshold, color=figures.VERMILION, linestyle="--", label="too small: step / farthest of N")
     axes.set(title="How near the best particle is to the wagon", xlabel="sigma along the corridor [m]")
     axes.set(ylabel="distance [m]", ylim=(1e-3, 30))
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
-    alt = """Distance to the nearest particle over sigma: metres below 0.035 m, a minimum near 0.07 m, then a steady
-        rise."""
+    axes.legend(**figures.BESIDE, fontsize=8)
+    alt = (
+        "Distance to the nearest particle over sigma: metres below 0.035 m, a minimum near 0.07 m, then a steady rise."
+    )
     return described(figure, alt)
 
 
 def corner_figure(true: np.ndarray, walks: dict[str, Walk], frames: list[int]) -> Figure:
-    """A wagon that turns into the side corridor, with the clouds at a few frames, one picture a walk."""
+    """Draw a wagon that turns into the side corridor, with the clouds at a few frames, one picture a walk."""
     figure, axes = figures.new_figure(1, len(walks), size=(4.0 * len(walks), 4.2))
     for a, (name, own) in zip(axes, walks.items(), strict=True):
         draw_plan(a, (13.3, 19.4), (-1.6, 6.4), name)
@@ -112,18 +111,16 @@ CONTROLS = [
 def cloud_panel() -> Panel:
     """Move a cloud by system noise, with or without an oracle that keeps the nearest particle."""
     path, frames = wagon_states()[: MAX_FRAMES + 1], np.arange(MAX_FRAMES + 1)
-    figure, axes = figures.new_figure(2, 2, size=(9.8, 4.9))
-    grid = axes[0, 0].get_gridspec()
+    figure, (above, (spread_axes, distance_axes)) = figures.new_figure(2, 2, size=(9.8, 4.9))
+    grid = above[0].get_gridspec()
     grid.set_height_ratios([1.25, 1])
-    for unused in axes[0]:
+    for unused in above:
         unused.remove()
-    plan, (spread_axes, distance_axes) = figure.add_subplot(grid[0, :]), axes[1]
+    plan = figure.add_subplot(grid[0, :])
     draw_plan(plan, (-0.5, 11.5), (-1.75, 1.75), "From above; paler clouds are earlier ones")
     plan.plot(*path[:, :2].T, color="black", linewidth=1.0, zorder=3, label="its path")
-    clouds = [
-        plan.plot([], [], ".", color=shade, markersize=size)[0]
-        for shade, size in (("#C9DEEE", 2.5), ("#9CC3E0", 2.5), ("#6BA3CF", 2.5), (figures.BLUE, 3.0))
-    ]
+    shades = {"#C9DEEE": 2.5, "#9CC3E0": 2.5, "#6BA3CF": 2.5, figures.BLUE: 3.0}
+    clouds = [plan.plot([], [], ".", color=shade, markersize=size)[0] for shade, size in shades.items()]
     clouds[3].set_label("particles, now (dash: heading)")
     dashes = plan.add_collection(LineCollection([], colors=figures.BLUE, linewidths=0.7, alpha=0.7), autolim=False)
     (wagon,) = plan.plot([], [], "D", color=figures.VERMILION, markersize=8, label="wagon, now")
@@ -136,16 +133,14 @@ def cloud_panel() -> Panel:
         *distance_axes.semilogy([], [], **styles[2], label="nearest particle"),
     ]
     spread_axes.set(title="Spread of the cloud in x", ylabel="spread [m]", ylim=(0, 3.3))
-    distance_axes.set(title="Distance from the wagon (below 1 mm drawn as 1 mm)", ylabel="distance [m]")
-    distance_axes.set(ylim=(0.0008, 30))
+    title = "Distance from the wagon (below 1 mm drawn as 1 mm)"
+    distance_axes.set(title=title, ylabel="distance [m]", ylim=(0.0008, 30))
     for a in (spread_axes, distance_axes):
         a.set(xlim=(0, MAX_FRAMES), xlabel="frame t [-]")
         a.legend(loc="upper left", fontsize=8, framealpha=0.95, ncols=2)
     live = LiveFigure(figure, [*clouds, dashes, wagon, *curves])
 
-    def draw(
-        sigma_x: float, sigma_y: float, sigma_yaw: float, n: float, frame: float, between: str, seed: float
-    ) -> Drawing:
+    def draw(sigma_x: float, sigma_y: float, sigma_yaw: float, n: float, frame: float, between: str, seed: float):
         t, sigma = int(frame), np.array([sigma_x, sigma_y, 0, 0, 0, np.deg2rad(sigma_yaw)])
         true = path[: t + 1]
         own = walk(true, sigma, int(n), int(seed), between == KEEP_NEAREST)
@@ -160,13 +155,13 @@ def cloud_panel() -> Panel:
         for curve, values in zip(curves, shown, strict=True):
             curve.set_data(frames[: t + 1], values)
         near_share = (distances(own.clouds[t:], true[t:]) <= 0.10).mean()
-        lines = [
-            f"spread in x after {t} frames: {spread[-1]:.2f} m (sqrt(t) sigma: {sigma_x * np.sqrt(t):.2f} m)",
-            f"nearest particle {own.nearest[-1]:.3f} m from the wagon; within 0.10 m of it: {near_share:.0%}",
-        ]
+        summary = (
+            f"spread in x after {t} frames: {spread[-1]:.2f} m (sqrt(t) sigma: {sigma_x * np.sqrt(t):.2f} m)\n"
+            f"nearest particle {own.nearest[-1]:.3f} m from the wagon; within 0.10 m of it: {near_share:.0%}"
+        )
         alt = f"""Clouds of {int(n)} particles from above over {t} frames ({between}), sigma {sigma_x:.3f} m in x,
             {sigma_y:.2f} m in y, {sigma_yaw:.1f} degrees in yaw; their spread and their distance from the wagon."""
-        return Drawing(live.png(), alt, "\n".join(lines))
+        return Drawing(live.png(), alt, summary)
 
     return Panel("05 the cloud", CONTROLS, draw)
 

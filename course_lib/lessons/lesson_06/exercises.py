@@ -6,24 +6,11 @@ from scipy.stats import norm
 
 from course_lib.lessons.kit.exercises import Exercise
 
-# 06.1: the raw score behind people
-
 
 def raw_score(hidden, alpha):
     """Raw scores l / m (n,) where people hide shares (n,) of the measured pixels."""
     # A mean over the pixels: each share of them counts its own term.
     return (1 - hidden) * alpha / (alpha + 0.02) + hidden * alpha / (alpha + 2)
-
-
-def shares_and_alpha(rng: np.random.Generator) -> tuple:
-    return rng.uniform(0, 1, int(rng.integers(3, 7))), rng.uniform(0.01, 1.0)
-
-
-def nobody_or_all_hidden(rng: np.random.Generator) -> tuple:
-    return np.array([0.0, 1.0, 0.0, 0.5]), 0.1
-
-
-# 06.2: three faults in somebody's code
 
 
 def weigh_rightly(measured, images, alpha, beta):
@@ -38,7 +25,7 @@ def weigh_rightly(measured, images, alpha, beta):
 
 
 def given_code(measured, images, alpha, beta, mended=()):
-    """The code of the task; "holes", "alike" and "exponent" name the faults that are mended."""
+    """Weigh as the code of the task does; "holes", "alike" and "exponent" name the faults that are mended."""
     with np.errstate(invalid="ignore", divide="ignore"):
         terms = alpha / (alpha + np.abs(measured - images))
         counted = np.isfinite(measured) & (np.isfinite(images) | ("holes" in mended))
@@ -51,7 +38,7 @@ def given_code(measured, images, alpha, beta, mended=()):
 
 
 def images_with_holes(rng: np.random.Generator) -> tuple:
-    """Images with pixels that were not measured, and particles that look into holes, more or less deep."""
+    """Make images with pixels that were not measured, and particles that look into holes of different sizes."""
     n, shape = int(rng.integers(4, 8)), (4, 5)
     measured = rng.uniform(1, 6, shape)
     images = measured + rng.normal(0, 1, (n, 1, 1)) * 0.2 + rng.normal(0, 0.05, (n, *shape))
@@ -61,21 +48,10 @@ def images_with_holes(rng: np.random.Generator) -> tuple:
     return measured, images, rng.uniform(0.05, 0.3), rng.uniform(0.2, 0.6)
 
 
-def all_alike(rng: np.random.Generator) -> tuple:
-    return np.full((2, 3), 2.0), np.full((4, 2, 3), 2.1), 0.1, 0.01
-
-
-def nothing_measured(rng: np.random.Generator) -> tuple:
-    return np.full((2, 3), np.nan), rng.uniform(1, 6, (5, 2, 3)), 0.1, 0.3
-
-
 def a_lucky_pixel(rng: np.random.Generator) -> tuple:
-    """The lesson's case: 2 cm off everywhere, beside one right pixel in a hole; and somebody far off."""
+    """Make a particle that is 2 cm off everywhere, one with a right pixel in a hole, and one that is far off."""
     images = np.stack([np.full((1, 6), 2.02), [[2.0] + [np.inf] * 5], np.full((1, 6), 2.3)])
     return np.full((1, 6), 2.0), images, 0.1, 0.3
-
-
-# 06.3: beta read backwards
 
 
 def min_likelihood(likelihoods, beta):
@@ -83,26 +59,6 @@ def min_likelihood(likelihoods, beta):
     # Equation (10) solved for the normalized likelihood, then equation (9) solved for l.
     normalized = 1 - beta * np.sqrt(np.log(2))
     return likelihoods.min() + normalized * (likelihoods.max() - likelihoods.min())
-
-
-def unequal_likelihoods(rng: np.random.Generator) -> tuple:
-    return rng.uniform(100, 900, int(rng.integers(5, 12))), rng.uniform(0.05, 0.6)
-
-
-def the_papers_beta(rng: np.random.Generator) -> tuple:
-    return rng.uniform(600, 900, 9), 0.01
-
-
-def a_large_beta(rng: np.random.Generator) -> tuple:
-    """Even the worst particle has more than one half here: the answer lies below all of them."""
-    return rng.uniform(100, 900, 6), 1.5
-
-
-def weight_of(l, beta):
-    return np.exp(-(((l - l.max()) / np.ptp(l) / beta) ** 2))
-
-
-# 06.4: the error bar of a weighted mean
 
 
 def importance_mean(x, target, proposal):
@@ -120,44 +76,37 @@ def weighted_samples(rng: np.random.Generator) -> tuple:
     return x + 10, rng.uniform(0.01, 100) * target, norm.pdf(x)
 
 
-def target_is_proposal(rng: np.random.Generator) -> tuple:
-    x = rng.normal(0, 1, 30)
-    return x, norm.pdf(x), norm.pdf(x)
-
-
-def one_outweighs_all(rng: np.random.Generator) -> tuple:
-    x = np.linspace(-2, 2, 9)
-    return x, 1e-30 * norm.pdf(x, 1.5, 0.2), norm.pdf(x)
-
-
 # fmt: off
 EXERCISES = [
-    Exercise("06.1", raw_score, shares_and_alpha, "warm-up", cases=[nobody_or_all_hidden], mistakes="""
+    Exercise("06.1", raw_score, lambda rng: (rng.uniform(0, 1, 5), rng.uniform(0.01, 1.0)), "warm-up", cases={
+        "nobody or all hidden": lambda rng: (np.array([0.0, 1.0, 0.0, 0.5]), 0.1),
+    }, mistakes="""
         ... => return alpha / (alpha + (1 - hidden) * 0.02 + hidden * 2)
         You average the differences first. Equation (8) averages *terms*: a large difference hardly matters there.
         (1 - hidden) => hidden and also + hidden => + (1 - hidden)
-        The shares are exchanged: `hidden` of the pixels differ by 2 m, the rest by 0.02 m.
+        You exchanged the shares: `hidden` of the pixels differ by 2 m, the rest by 0.02 m.
         + hidden * alpha / (alpha + 2) =>
-        You leave the hidden pixels out. They were measured: each counts its term, small as it is.
+        You leave the hidden pixels out. They were measured, so each of them counts its small term.
         ... => return alpha / (alpha + 0.02) + 0 * hidden
         You leave the hidden pixels out of l and of m. The m of l / m is the number of all measured pixels.
         (1 - hidden) * alpha => alpha
         Only a share 1 - `hidden` of the pixels differs by 0.02 m: the two shares sum to 1.
         (1 - hidden) * alpha => (1 - hidden) * 0.02 and also hidden * alpha => hidden * 2
-        That is what the pixels lose, d / (alpha + d). Equation (8) takes it away from 1.
+        That is what the pixels lose, d / (alpha + d). Equation (8) subtracts it from 1.
         ... => return (alpha / (alpha + 0.02)) ** (1 - hidden) * (alpha / (alpha + 2)) ** hidden
         You multiply the terms. Equation (8) adds them up, and l / m is their mean.
-        alpha / (alpha => 0.1 / (0.1
-        Your alpha is always 0.1 m: use the argument.
     """),
-    Exercise("06.2", weigh_rightly, images_with_holes, cases=[a_lucky_pixel, all_alike, nothing_measured], mistakes="""
+    Exercise("06.2", weigh_rightly, images_with_holes, cases={
+        "a lucky pixel": a_lucky_pixel,
+        "all alike": lambda rng: (np.full((2, 3), 2.0), np.full((4, 2, 3), 2.1), 0.1, 0.01),
+        "nothing measured": lambda rng: (np.full((2, 3), np.nan), rng.uniform(1, 6, (5, 2, 3)), 0.1, 0.3),
+    }, mistakes="""
         ... => return given_code(measured, images, alpha, beta, ["alike", "exponent"])
-        A particle that looks into a hole pays nothing in yours. One fault is left, in the first two lines.
+        In yours a particle that looks into a hole pays nothing. One fault is left, in the first two lines.
         ... => return given_code(measured, images, alpha, beta, ["holes", "exponent"])
         One fault is left: what does (9) give where all agree, and what is exp(-1 / beta^2) at beta = 0.01?
         ... => return given_code(measured, images, alpha, beta, ["holes", "alike"])
         / beta**2 => / beta
-        ((normalized - 1) ** 2) / beta**2 => (1 - normalized) / beta
         One fault is left: compare the exponent with (10) at a beta other than 1. What is squared?
         ... => return given_code(measured, images, alpha, beta, ["exponent"])
         ... => return given_code(measured, images, alpha, beta, ["alike"])
@@ -165,98 +114,61 @@ EXERCISES = [
         One fault is mended, two are left. Try a hole in the map, particles all alike, and a small beta.
         ... => return given_code(measured, images, alpha, beta)
         All three faults are still in. Try a hole, particles all alike, and a small beta.
-        / beta**2 => / (2 * beta**2)
-        Your exponent has the 2 of the usual Gaussian below the line. Equation (10) has none.
-        (normalized - 1) => normalized
-        Your worst particle weighs most: (10) takes the distance from 1, not from 0.
         np.exp(-((normalized - 1) ** 2) / beta**2) => normalized
-        You leave (10) out: the normalized likelihood itself, divided by its sum, is not yet the weight.
+        You leave (10) out. The normalized likelihood itself, divided by its sum, is not yet the weight.
         (l - l.min()) / (l.max() - l.min()) => l / l.max()
-        You divide by the largest likelihood. Equation (9) takes the least away first: the worst gets 0.
+        You divide by the largest likelihood. Equation (9) subtracts the least first: the worst gets 0.
         valid = np.isfinite(measured) => valid = np.isfinite(measured) & np.isfinite(images).all(axis=0)
         You leave out, for all, a pixel that *any* particle misses. Leave out only what was not measured.
-        images[:, valid] => np.minimum(images[:, valid], 11.0)
-        images[:, valid] => np.nan_to_num(images[:, valid], posinf=0.0)
-        You take a miss for a surface at some depth. Its difference is infinite: in (8) it counts 0.
-        measured[valid] - images[:, valid] => np.nan_to_num(measured[valid] - images[:, valid], neginf=0.0)
-        In yours a particle that sees nothing agrees with everything: misses count 1.
         valid = np.isfinite(measured) => measured = np.nan_to_num(measured); valid = measured > -1
         You take a pixel without a measurement for a depth of 0 m. It says nothing: leave it out for all.
-        np.full(len(images), 1 / len(images)) => np.zeros(len(images))
-        np.full(len(images), 1 / len(images)) => np.ones(len(images))
-        ... => return np.nan_to_num(given_code(measured, images, alpha, beta, ["holes", "exponent"]))
-        Where all likelihoods agree the sum of your weights is not 1. Give each particle the same share.
-        ... => w = weigh_rightly(measured, images, alpha, beta); return w / w.max()
         w / w.sum() => w / w.max()
-        w / w.sum() => w
         Equation (11) makes the *sum* of the weights 1.
     """),
-    Exercise("06.3", min_likelihood, unequal_likelihoods, cases=[the_papers_beta, a_large_beta], mistakes="""
-        ... => return max(min_likelihood(likelihoods, beta), likelihoods.min())
-        You stop at the worst particle. For a large beta the l of one half lies below all of them.
+    Exercise("06.3", min_likelihood, lambda rng: (
+        rng.uniform(100, 900, int(rng.integers(5, 12))), rng.uniform(0.05, 0.6),
+    ), cases={
+        "the paper's beta": lambda rng: (rng.uniform(600, 900, 9), 0.01),
+        "a large beta": lambda rng: (rng.uniform(100, 900, 6), 1.5),  # the worst particle has more than one half
+    }, mistakes="""
         ... => return 1 - beta * np.sqrt(np.log(2))
         That is the normalized likelihood. Turn (9) around, too, to get back to l.
-        np.sqrt(np.log(2)) => np.log(2)
         beta * np.sqrt(np.log(2)) => beta**2 * np.log(2)
-        beta * np.sqrt(np.log(2)) => np.sqrt(beta * np.log(2))
         Equation (10) says that the *square* of the distance is beta^2 ln 2: take the root of all of it, once.
         np.log(2) => np.log10(2)
-        exp is undone by the natural logarithm, np.log; yours is the one to base 10.
+        The natural logarithm, np.log, undoes exp. Yours is the logarithm to base 10.
         ... => return likelihoods.max() * (1 - beta * np.sqrt(np.log(2)))
-        ... => return likelihoods.max() - beta * np.sqrt(np.log(2))
-        The distance is one of normalized likelihoods. Equation (9) divides by l_max - l_min: undo that.
+        The distance is between normalized likelihoods. Equation (9) divides by l_max - l_min: undo that.
         beta * np.sqrt(np.log(2)) => beta
         At one beta below the best w is exp(-1), about 0.37. The task asks for one half.
-        1 - beta => 1 + beta
-        Yours lies above the best likelihood. Of the two roots take the one below 1.
-        1 - beta => beta
-        You count from the worst particle. The distance in (10) is that from the best.
         likelihoods.min() + normalized => normalized
-        Almost: l_min is missing. Equation (9) takes it away, so add it again.
+        Almost: l_min is missing. Equation (9) subtracts it, so add it again.
         np.log(2) => 2 * np.log(2)
         That is the half width of the usual Gaussian, with a 2 below. Equation (10) has none.
-        ... => return likelihoods[np.argmin(np.abs(weight_of(likelihoods, beta) - 0.5))]
-        ... => return likelihoods[weight_of(likelihoods, beta) >= 0.5].min()
+        ... => return likelihoods[likelihoods >= min_likelihood(likelihoods, beta)].min()
         You choose one of the particles. The task asks for the exact l of one half, where no particle need be.
         normalized = 1 - beta * np.sqrt(np.log(2)) => normalized = 0.5
         There the *normalized likelihood* is one half. Its weight is less: solve (10) for w = 1/2.
     """),
-    Exercise("06.4", importance_mean, weighted_samples, "challenge", cases=[
-        target_is_proposal, one_outweighs_all,
-    ], mistakes="""
+    Exercise("06.4", importance_mean, weighted_samples, "challenge", cases={
+        "target is proposal": lambda rng: (x := rng.normal(0, 1, 30), norm.pdf(x), norm.pdf(x)),
+        "one outweighs all": lambda rng: (x := np.linspace(-2, 2, 9), 1e-30 * norm.pdf(x, 1.5, 0.2), norm.pdf(x)),
+    }, mistakes="""
         np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.sqrt(np.sum((w * (x - mean)) ** 2) * len(x) / (len(x) - 1))
         Your mean is right. No n / (n - 1) here: the variance is a sum over samples, and the example gives 0.354.
         w * (x - mean)) => w * x)
-        w * (x - mean)) => w * (x - x.mean()))
-        Your mean is right. In the error take deviations from this mean, not the samples, nor from the plain mean.
-        np.sqrt(np.sum((w * (x - mean)) ** 2)) => x.std() * np.sqrt(np.sum(w**2))
+        Your mean is right. In the error take deviations from this mean, not the samples themselves.
         np.sqrt(np.sum((w * (x - mean)) ** 2)) => x.std() / np.sqrt(len(x))
-        np.sqrt(np.sum((w * (x - mean)) ** 2)) => x.std(ddof=1) / np.sqrt(len(x))
         Your mean is right. The spread in your error is that of the unweighed samples: derive it.
-        np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.std(w * x)
-        np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.std(w * x) * np.sqrt(len(x))
-        np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.std(target / proposal * x) / np.sqrt(len(x))
-        Your mean is right. But its denominator scatters too: take deviations from the mean, then weigh them.
         np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.sqrt(np.sum(w * (x - mean) ** 2))
-        Your mean is right. That is the spread of the target; its mean is known better than that.
+        Your mean is right. That is the spread of the target; we know its mean better than that.
         np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.sqrt(np.sum(w * (x - mean) ** 2) / len(x))
-        Your mean is right. Spread over root n holds for equal weights: here some samples count for many.
+        Your mean is right. Spread over root n holds for equal weights. Here some samples count for many.
         np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.sqrt(np.sum(w * (x - mean) ** 2) * np.sum(w**2))
         Your mean is right. Spread over root N_eff is near, but heavy samples lie together: derive it.
-        w = target / proposal => w = np.ones(len(x))
-        These are the samples unweighed: they belong to the proposal. The target's mean is asked.
-        target / proposal => proposal / target
-        Your weights are upside down. Where the proposal is dense there are too many samples: divide by it.
         target / proposal => target
         You weigh by the target alone. The samples are dense already where the proposal is: divide by it.
         w / w.sum() => w / len(x)
         You divide by n. The target's scale is not known, so divide by the sum of the weights.
-        np.sum((w * (x - mean)) ** 2) => np.sum(target / proposal * (x - mean) ** 2) / np.sum(target / proposal) ** 2
-        Your mean is right. Your error changes with the target's unknown factor: a weight enters squared.
-        np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.sqrt(np.sum((w * (x - mean)) ** 2) / len(x))
-        Your mean is right. In the error you divide by n though the weights sum to 1 already.
-        np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.sum(w * np.abs(x - mean))
-        np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.abs(np.sum(w * (x - mean)))
-        Your mean is right. Independent errors add by their squares: square each term before you add.
     """),
 ]

@@ -20,12 +20,12 @@ class StoredRun(NamedTuple):
     columns: np.ndarray
 
     def positions(self, method: str) -> np.ndarray:
-        """Estimated positions `(T, 2)` [m] of a method, such as "proposed" or "fallon"."""
+        """Return the estimated positions `(T, 2)` [m] of a method, such as "proposed" or "fallon"."""
         return np.column_stack([self.columns[f"{method}_x_m"], self.columns[f"{method}_y_m"]])
 
 
 def stored_runs() -> list[StoredRun]:
-    """All stored seeds, in their order."""
+    """Return all stored seeds in their order."""
     runs = []
     for path in data_path("corridor/results").glob("seed_*.json"):
         summary = json.loads(path.read_text(encoding="utf-8"))
@@ -35,18 +35,18 @@ def stored_runs() -> list[StoredRun]:
 
 
 def over_seeds(runs: list[StoredRun], method: str, key: str) -> np.ndarray:
-    """One number of the summary, such as "median_m", for every seed `(S,)`."""
+    """Return one number of the summary, such as "median_m", for every seed `(S,)`."""
     return np.array([run.summary["methods"][method][key] for run in runs])
 
 
 def spread_over_seeds(runs: list[StoredRun], method: str, key: str) -> str:
-    """A number of the summary as its median over the seeds, least and greatest: "0.016 (0.014 to 0.017)"."""
+    """Return a number's median over the seeds, its smallest and its largest value: "0.016 (0.014 to 0.017)"."""
     values = over_seeds(runs, method, key)
     return f"{np.median(values):.3f} ({values.min():.3f} to {values.max():.3f})"
 
 
 def table_1(runs: list[StoredRun]) -> str:
-    """The paper's table 1: its two rows, then ours and the Fallon-style ones, each the median over the seeds."""
+    """Return the paper's table 1: its two rows, then ours and the Fallon-style ones, medians over the seeds."""
     lines = [
         f"{'':36} {'nearest point of the path':^29} {'same frame':>12}",
         f"{'':36} {'median [m]':>10} {'sigma [m]':>9} {'<= 0.30 m':>9} {'median [m]':>11}",

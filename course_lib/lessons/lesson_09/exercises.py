@@ -7,28 +7,11 @@ from course_lib.geometry import rotation_exp, rotation_log
 from course_lib.lessons.kit.exercises import Exercise
 from course_lib.lessons.kit.values import agree, as_numbers
 
-# 09.1: as dense in more dimensions
-
 
 def particles_for(n, d, d_new):
     """Number of particles that lie as densely in d_new dimensions as n do in d."""
     # n ** (1 / d) along an edge, and as many along each of d_new edges.
     return (n ** (1 / d)) ** d_new
-
-
-def number_and_dimensions(rng: np.random.Generator) -> tuple:
-    return int(rng.integers(20, 1000)), int(rng.integers(1, 7)), int(rng.integers(1, 7))
-
-
-def fewer_dimensions(rng: np.random.Generator) -> tuple:
-    return 200, 3, 2
-
-
-def the_same_dimension(rng: np.random.Generator) -> tuple:
-    return int(rng.integers(20, 1000)), 4, 4
-
-
-# 09.2: the mean of rotations in their tangent space
 
 
 def mean_rotation(rotations, w):
@@ -40,7 +23,7 @@ def mean_rotation(rotations, w):
     return R
 
 
-def weighted_rotations(rng: np.random.Generator) -> tuple:
+def weighted_rotations(rng):
     """Two to seven rotations about a base that looks anywhere, often straight down or backwards."""
     n = int(rng.integers(2, 8))
     pitch = rng.choice([rng.uniform(-1.4, 1.4), np.pi / 2 - 0.05, -np.pi / 2 + 0.05])
@@ -52,16 +35,8 @@ def weighted_rotations(rng: np.random.Generator) -> tuple:
     return (base * Rotation.from_rotvec(apart)).as_matrix(), w / w.sum()
 
 
-def one_rotation(rng: np.random.Generator) -> tuple:
-    return Rotation.from_rotvec([[0.3, -2.0, 1.0]]).as_matrix(), np.ones(1)
-
-
-def equal_rotations(rng: np.random.Generator) -> tuple:
-    return np.tile(Rotation.from_rotvec([0.1, 0.4, 2.5]).as_matrix(), (4, 1, 1)), np.array([0.4, 0.3, 0.2, 0.1])
-
-
 def unbalanced(given, R):
-    """What is wrong with a mean rotation: its shape, its columns, or the vectors to all others seen from it."""
+    """Return what is wrong with a mean rotation: its shape, its columns, or the vectors to all others seen from it."""
     if agree(R, mean_rotation(*given), 1e-6):
         return None
     if (R := as_numbers(R)) is None or R.shape != (3, 3):
@@ -69,9 +44,6 @@ def unbalanced(given, R):
     if not np.allclose(R.T @ R, np.eye(3), atol=1e-6):
         return "Your matrix is no rotation: its columns must have length 1 and stand at right angles."
     return "Seen from your R the vectors do not balance: which rotation is turned back, and on which side do you step?"
-
-
-# 09.3: is a covariance honest?
 
 
 def honesty(errors, covariances):
@@ -84,7 +56,7 @@ def honesty(errors, covariances):
     return np.mean(squared), np.mean(within)
 
 
-def errors_and_covariances(rng: np.random.Generator) -> tuple:
+def errors_and_covariances(rng):
     """Correlated errors of two to six components in unlike units; some lie beyond three sigma, above and below."""
     t, d = int(rng.integers(5, 12)), int(rng.integers(2, 7))
     roots, units = rng.standard_normal((t, d, d)) + np.eye(d), np.geomspace(0.01, 2.0, d)
@@ -94,13 +66,6 @@ def errors_and_covariances(rng: np.random.Generator) -> tuple:
     for column in (rng.integers(d, size=3), 0):
         errors[far, column] = np.sqrt(covariances[far, 0, 0]) * [4, -4, -5]
     return errors, covariances
-
-
-def one_component(rng: np.random.Generator) -> tuple:
-    return rng.normal(0, 2, (6, 1)), rng.uniform(0.2, 1.0, (6, 1, 1))
-
-
-# 09.4: a robust fit of points to walls, in the plane
 
 
 def fit_motion(points, normals, offsets, scale):
@@ -117,95 +82,61 @@ def fit_motion(points, normals, offsets, scale):
     return motion
 
 
-def walls_at(angles: np.ndarray, offsets: np.ndarray, rng: np.random.Generator) -> tuple:
-    """Points (n, 2) on walls, one for each angle of a normal and each offset, and the normals (n, 2)."""
+def walls_at(angles, offsets, rng, shift, turn, before=0.0):
+    """Points (n, 2), one on each wall or so far before it, as seen after a shift and a turn; the normals (n, 2)."""
     normals = np.column_stack([np.cos(angles), np.sin(angles)])
-    along = np.column_stack([-normals[:, 1], normals[:, 0]])
-    return offsets[:, None] * normals + rng.uniform(-1.2, 1.5, (len(angles), 1)) * along, normals
-
-
-def moved_back(world: np.ndarray, shift: np.ndarray, turn: float) -> np.ndarray:
+    along = rng.uniform(-1.2, 1.5, (len(angles), 1)) * normals[:, ::-1] * [-1, 1]
     c, s = np.cos(turn), np.sin(turn)
-    return (world - shift) @ np.array([[c, -s], [s, c]])
+    return ((offsets - before)[:, None] * normals + along - shift) @ np.array([[c, -s], [s, c]]), normals
 
 
-def points_on_walls(rng: np.random.Generator) -> tuple:
+def points_on_walls(rng):
     """Points on three or four walls of a room, seen from nearly the right place, and a person before one of them."""
-    walls = int(rng.integers(3, 5))
+    walls, scale = int(rng.integers(3, 5)), float(rng.choice([0.15, 0.2, 0.25]))
+    which = np.repeat(np.arange(walls), int(rng.integers(8, 14)))
     angles = rng.uniform(-np.pi, np.pi) + np.pi / 2 * np.arange(walls) + rng.normal(0, 0.05, walls)
-    which, away = np.repeat(np.arange(walls), int(rng.integers(8, 14))), rng.uniform(1.5, 4.0, walls)
-    world, normals = walls_at(angles[which], away[which] + rng.normal(0, 0.004, len(which)), rng)
+    away, before = rng.uniform(1.5, 4.0, walls)[which], rng.normal(0, 0.004, len(which))
     person = rng.permutation(len(which))[: len(which) // 6]
-    world[person] -= rng.uniform(0.25, 0.7, (len(person), 1)) * normals[person]
+    before[person] += rng.uniform(0.25, 0.7, len(person))
     turn = rng.choice([-1, 1]) * np.deg2rad(rng.uniform(1.5, 3.0))
-    points = moved_back(world, rng.uniform(-0.06, 0.06, 2), turn)
-    return points, normals, away[which], float(rng.choice([0.15, 0.2, 0.25]))
+    return *walls_at(angles[which], away, rng, rng.uniform(-0.06, 0.06, 2), turn, before), away, scale
 
 
-def two_walls_and_a_person(rng: np.random.Generator) -> tuple:
-    points = np.array([[2.1, 0.5], [2.1, -0.5], [1.0, 0.0], [0.5, 1.0], [-0.5, 1.0]])
-    return points, np.repeat(np.eye(2), [3, 2], axis=0), np.array([2.0, 2.0, 2.0, 1.0, 1.0]), 0.1
-
-
-def a_large_turn(rng: np.random.Generator) -> tuple:
+def a_large_turn(rng):
     """Fifteen degrees and four decimetres, nobody in the way: the first steps' shifts turn with the later steps."""
-    offsets = np.full(24, 3.0)
-    world, normals = walls_at(np.repeat(np.deg2rad([10.0, 100.0, 190.0]), 8), offsets, rng)
-    return moved_back(world, np.array([0.3, -0.25]), np.deg2rad(15)), normals, offsets, 1.5
-
-
-def steps_added_up(points, normals, offsets, scale):
-    """A mistake: each step is right about the points where they are; the sum of the steps is not the motion."""
-    motion, moved = np.zeros(3), points
-    for _ in range(40):
-        J = np.column_stack([normals, normals[:, 1] * moved[:, 0] - normals[:, 0] * moved[:, 1]])
-        r = (normals * moved).sum(axis=1) - offsets
-        w = (1 + (r / scale) ** 2) ** -2.0
-        step = -np.linalg.solve(J.T @ (w[:, None] * J), J.T @ (w * r))
-        moved, motion = moved_back(moved, np.zeros(2), -step[2]) + step[:2], motion + step
-    return motion
+    angles, offsets = np.repeat(np.deg2rad([10.0, 100.0, 190.0]), 8), np.full(24, 3.0)
+    return *walls_at(angles, offsets, rng, [0.3, -0.25], np.deg2rad(15)), offsets, 1.5
 
 
 # fmt: off
 EXERCISES = [
-    Exercise("09.1", particles_for, number_and_dimensions, "warm-up", cases=[
-        fewer_dimensions, the_same_dimension,
-    ], mistakes="""
+    Exercise("09.1", particles_for, lambda rng: tuple(rng.integers([20, 1, 1], [1000, 7, 7]).tolist()), "warm-up", {
+        "fewer dimensions": lambda rng: (200, 3, 2),
+        "the same dimension": lambda rng: (int(rng.integers(20, 1000)), 4, 4),
+    }, mistakes="""
         n ** (1 / d) => int(n ** (1 / d))
-        n ** (1 / d) => round(n ** (1 / d))
-        You make the d-th root a whole number: so the spacing changes. Leave all numbers as they come.
+        You make the d-th root a whole number, so the spacing changes. Leave all numbers as they come.
         ... => return int(n ** (d_new / d))
-        ... => return np.ceil(n ** (d_new / d))
-        ... => return np.rint(n ** (d_new / d))
         You make it a whole number of particles. Leave the number as it is.
-        ... => return max(n, n ** (d_new / d))
-        In fewer dimensions fewer particles are as dense: the number may be smaller than n.
         ... => return n ** (1 / d_new)
-        You take the root of the new dimension: n fill the *old* one. The d-th root, then to the power d_new.
+        You take the root of the new dimension, but n fill the *old* one. Take the d-th root, then the power d_new.
         (n ** (1 / d)) ** d_new => n ** (1 / d) ** d_new
         a ** b ** c is a ** (b ** c) in Python: set brackets around the d-th root.
-        (n ** (1 / d)) ** d_new => n * d_new / d
         (n ** (1 / d)) ** d_new => n ** (1 / d) * d_new
         You multiply by d_new. n ** (1 / d) lie along one edge; they fill d_new edges by a power, not a product.
         ... => return n ** (d / d_new)
         Your exponent is upside down: more dimensions need more particles, not fewer.
         ... => return n ** (d_new - d)
-        ... => return n ** (d_new // d)
-        From 1 dimension to 2 the number is squared, from 2 to 3 the exponent is 1.5: a ratio, with its remainder.
+        From 1 dimension to 2 the number is squared, from 2 to 3 the exponent is 1.5: it is a ratio.
         ... => return n ** d_new
-        You take n for the number along one axis; it is the number in d dimensions. Take its d-th root first.
-        ... => return n ** (-1 / d)
-        That is the spacing, as a share of the width. The task asks for the number that has this spacing.
+        You take n for the number along one axis. It is the number in d dimensions: take its d-th root first.
     """),
-    Exercise("09.2", mean_rotation, weighted_rotations, verify=unbalanced, cases=[
-        one_rotation, equal_rotations,
-    ], mistakes="""
+    Exercise("09.2", mean_rotation, weighted_rotations, verify=unbalanced, cases={
+        "one rotation": lambda rng: (Rotation.from_rotvec([[0.3, -2.0, 1.0]]).as_matrix(), np.ones(1)),
+        "equal rotations": lambda rng: (Rotation.from_rotvec([[0.1, 0.4, 2.5]] * 4).as_matrix(), np.arange(1, 5) / 10),
+    }, mistakes="""
         return R => return R.T
-        Your matrix is transposed: that is the rotation back.
-        ... => return rotations[0]
-        You give the start back, R_1: the step is never taken.
-        ... => return rotation_exp(w @ rotation_log(rotations[0].T @ rotations))
-        That is the first step alone, a turn seen from R_1. Put it onto R_1, and repeat.
+        Your matrix is transposed: it is the rotation back.
         range(20) => range(1)
         One round is not enough: from the new R the vectors look different. Repeat until nothing moves.
         R = R @ rotation_exp => S = rotation_exp and also rotations)) => rotations)); R = S @ R
@@ -215,86 +146,63 @@ EXERCISES = [
         R.T @ rotations => R @ rotations
         R R_i is no difference of two rotations: where R_i = R it must be the identity. Which of them is turned back?
         R = rotations[0] => R = rotations[0]; w = np.full(len(w), 1 / len(w))
-        Your mean lets all count alike: where are the weights?
+        All rotations count alike in your mean: where are the weights?
         ... => return np.tensordot(w, rotations, 1)
         The mean of matrices is no rotation: its columns are shorter than 1. Average Log(R' R_i) instead.
         ... => return Rotation.from_matrix(rotations).mean(w).as_matrix()
-        ... => return Rotation.from_matrix(rotations).mean().as_matrix()
-        That is the rotation nearest to the mean matrix (chordal): near, but its sum of w Log is not zero.
+        You give the rotation nearest to the mean matrix (chordal). It is near, but its sum of w Log is not zero.
         ... => return rotation_exp(w @ rotation_log(rotations))
         You average rotation vectors seen from the identity, which may be far away. Take them seen from R.
         ... => return Rotation.from_euler("ZYX", w @ Rotation.from_matrix(rotations).as_euler("ZYX")).as_matrix()
-        You average roll, pitch and yaw: at a seam or looking straight down that is no mean at all.
-        return R => return rotation_log(R)
-        You give back a rotation vector; the task asks for the matrix.
+        You average roll, pitch and yaw. At a seam, or if you look straight down, this is no mean at all.
     """),
-    Exercise("09.3", honesty, errors_and_covariances, cases=[one_component], mistakes="""
-        np.abs(e) <= 3 * np.sqrt(np.diag(C)) => e @ np.linalg.solve(C, e) <= 9
+    Exercise("09.3", honesty, errors_and_covariances, cases={
+        "one component": lambda rng: (rng.normal(0, 2, (6, 1)), rng.uniform(0.2, 1.0, (6, 1, 1))),
+    }, mistakes="""
         np.abs(e) <= 3 * np.sqrt(np.diag(C)) => np.all(np.abs(e) <= 3 * np.sqrt(np.diag(C)))
         You count whole images. Count every component by itself, each by its own sigma.
         3 * np.sqrt => np.sqrt
-        Your limit is one sigma. Three are asked for.
-        np.abs(e) <= 3 * np.sqrt(np.diag(C)) => e**2 <= 3 * np.diag(C)
-        Squared, the limit is nine variances, not three.
-        np.diag(C) => np.linalg.eigvalsh(C)
-        Roots of eigenvalues are sigmas along the ellipsoid's axes. The diagonal has those of the components.
+        Your limit is one sigma. The task asks for three.
         np.abs(e) <= => e <=
-        np.abs(e) <= => -e <=
         An error of +4 sigma is outside, and so is one of -4 sigma: take its absolute value.
         <= 3 => > 3
-        You count those outside three sigma. Count those within.
+        You count the errors outside three sigma. Count the others.
         solve(C, e) => solve(covariances.mean(axis=0), e)
         You use one mean covariance for all images. Each image has claimed its own.
         e @ np.linalg.solve(C, e) / len(e) => np.mean(e**2 / np.diag(C))
         You use the diagonal of C alone. Errors that go together need the whole inverse: e' C^-1 e.
         np.linalg.solve(C, e) => C @ e
         You multiply by C. A large covariance must make the number small: use its inverse.
-        e @ np.linalg.solve(C, e) / len(e) => np.sqrt(e @ np.linalg.solve(C, e) / len(e))
-        You take the root in every image; the mean is of the squares.
         / len(e) =>
-        / len(e) => / 6
-        Your first number grows with the number of components: divide by d, errors.shape[1], which is not always 6.
-        np.mean(squared) => np.sum(squared)
-        np.mean(within) => np.sum(within)
-        You add up. A mean is divided by the number of images T, a share by the number of errors, T d.
-        , np.mean(within) =>
-        That is the first number alone. Asked is the share within three sigma as well.
+        Your first number grows with the number of components: divide by d, which is errors.shape[1].
         np.mean(within) => 100 * np.mean(within)
-        Your second number is in percent; a share is between 0 and 1.
+        Your second number is in percent. Give a share between 0 and 1.
     """),
-    Exercise("09.4", fit_motion, points_on_walls, "challenge", tolerance=1e-4, cases=[
-        two_walls_and_a_person, a_large_turn,
-    ], mistakes="""
+    Exercise("09.4", fit_motion, points_on_walls, "challenge", tolerance=1e-4, cases={
+        "two walls and a person": lambda rng: (np.array([[2.1, 0.5], [2.1, -0.5], [1, 0], [0.5, 1], [-0.5, 1]]),
+                                               np.repeat(np.eye(2), [3, 2], axis=0), np.array([2.0, 2, 2, 1, 1]), 0.1),
+        "a large turn": a_large_turn,
+    }, mistakes="""
         motion - np.linalg => motion + np.linalg and also 40 => 10
         motion - np.linalg => motion + np.linalg and also 40 => 20
-        Your steps lead away from the walls: motion *minus* what the system gives, for r falls along -J.
-        return motion => return motion[[2, 0, 1]]
-        The values are right, in another order: t_x, t_y, theta.
+        Your steps lead away from the walls: motion *minus* what the system gives, because r falls along -J.
         return motion => return motion * [1, 1, 180 / np.pi]
-        Your angle is in degrees; give radians.
+        Your angle is in degrees. Give radians.
         r / scale => r
-        r / scale => r / 0.1
-        r / scale => r / 0.15
-        r / scale => r / 0.2
-        You leave `scale` out, or write a number for it: r / scale says what is far.
+        You leave `scale` out: r / scale says what is far.
         w = 1 / (1 + (r / scale) ** 2) ** 2 => w = np.ones(len(r))
         All points count alike, and the person pulls. Weigh each by 1 / (1 + (r / scale)^2)^2.
         (1 + (r / scale) ** 2) ** 2 => (1 + (r / scale) ** 2)
         Your weight is 1 / (1 + (r / scale)^2). The outer square is missing.
-        (1 + (r / scale) ** 2) ** 2 => (1 + (r / scale) ** 2) ** 4
-        Your weights count twice, as if squared: use them once, between J' and J, and between J' and r.
         range(40) => range(1)
-        That is the first step. Move the points, compute residuals and weights anew, and step again.
-        w = 1 / (1 + (r / scale) ** 2) ** 2 => w = w if motion.any() else 1 / (1 + (r / scale) ** 2) ** 2
-        You keep the weights of the first step. Compute them from the residuals of every step.
+        You take the first step only. Move the points, compute residuals and weights anew, and step again.
         [[c, -s], [s, c]] => [[c, s], [-s, c]] and also [[-s, -c], [c, -s]] => [[-s, c], [-c, -s]]
         Your theta has the wrong sign: it turns clockwise. [cos, -sin] is the first row of R.
         (w[:, None] * J), => (w[:, None] * J) + np.diag([0, 0, 1]), and also [[-s, -c], [c, -s]] => [[0, 0], [0, 0]]
         Your points are shifted, never turned: the third column of J is n . (dR/dtheta p).
         [[-s, -c], [c, -s]] => [[0, -1], [1, 0]]
-        Your dR/dtheta is that of theta = 0. Take it at the theta reached so far, anew in every step.
-    """, functions={
-        steps_added_up: "You add up the steps, but a turn also turns the shifts before it: "
-                        "move the points by the whole motion so far.",
-    }),
+        Your dR/dtheta is the one at theta = 0. Take it at the theta of each step.
+        w = 1 / (1 + (r / scale) ** 2) ** 2 => w = w if _ else 1 / (1 + (r / scale) ** 2) ** 2
+        You weigh the points once, at the start. Their residuals change with every step, so weigh them anew each time.
+    """),
 ]

@@ -11,11 +11,8 @@ from course_lib.plots.figures import BLACK, BLUE, SKY_BLUE, VERMILION, depth_ima
 SCENE = """A corridor cut open; along it small blue ellipsoids on a dashed line, first upright, then wide, then small;
     an orange line that wanders to and fro at the start and stays behind."""
 DASHED = {"color": BLACK, "linewidth": 0.9, "linestyle": (0, (6, 3))}
+SMALL = {"markersize": 4}
 COMPONENTS = ("place: x", "place: y", "place: z", "turn about forward", "turn about left", "turn about up")
-
-
-def small_markers(index: int) -> dict:
-    return line_style(index) | {"markersize": 4}
 
 
 def clouds(densities: list[tuple], n: int) -> Figure:
@@ -51,7 +48,8 @@ def weights(papers: np.ndarray, tempered: Tempered) -> Figure:
     alt = "The paper's weights fall from one to a millionth at once; the tempered ones fall slowly over forty ranks."
     figure, axes = new_figure(size=(6.0, 2.9))
     for index, (name, w) in enumerate((("the paper's, beta 0.01", papers), ("tempered", tempered.weights))):
-        axes.semilogy(np.arange(1, 41), np.maximum(np.sort(w)[::-1][:40], 1e-6), **small_markers(index), label=name)
+        greatest = np.maximum(np.sort(w)[::-1][:40], 1e-6)
+        axes.semilogy(np.arange(1, 41), greatest, **(line_style(index) | SMALL), label=name)
     axes.set(title="The 40 greatest of 200 weights (below 1e-6 drawn there)", xlabel="rank [-]", ylabel="weight [-]")
     axes.legend()
     return described(figure, alt)
@@ -63,8 +61,8 @@ def tracks(named: dict[str, Track]) -> Figure:
         degree, both runs of the paper's filter lie ten to several hundred times higher."""
     figure, (position, rotation) = new_figure(1, 2, size=(9.0, 3.0))
     for index, (name, track) in enumerate(named.items()):
-        position.semilogy(track.position, **small_markers(index), label=name)
-        rotation.semilogy(np.maximum(track.rotation, 0.01), **small_markers(index))
+        position.semilogy(track.position, **(line_style(index) | SMALL), label=name)
+        rotation.semilogy(np.maximum(track.rotation, 0.01), **(line_style(index) | SMALL))
     position.set(title="Position: every fourth image", xlabel="image [-]", ylabel="error [m]", ylim=(2e-3, 20))
     rotation.set(title="Rotation: every fourth image", xlabel="image [-]", ylabel="error [degrees]", ylim=(1e-2, 300))
     position.legend(fontsize=8, framealpha=0.95)
@@ -78,8 +76,7 @@ def basin(found: dict[float, tuple[np.ndarray, np.ndarray]]) -> Figure:
     figure, (ends, share) = new_figure(1, 2, size=(9.0, 3.0))
     rng, offsets, back = np.random.default_rng(9), list(found), [back for _, back in found.values()]
     for offset, (end, _) in found.items():
-        jitter = offset * rng.uniform(0.95, 1.05, end.shape)
-        ends.plot(jitter.ravel(), end.ravel(), ".", color=BLUE, markersize=4)
+        ends.plot(offset * rng.uniform(0.95, 1.05, end.size), end.ravel(), ".", color=BLUE, markersize=4)
     ends.plot(offsets, offsets, **DASHED, label="no better")
     ends.set(title="Gauss-Newton from one start", xlabel="error at the start [m]", ylabel="error at the end [m]")
     ends.set(xscale="log", yscale="log")
@@ -102,8 +99,7 @@ def ablation(shares: dict[str, tuple[float, list[float]]]) -> Figure:
         """
     figure, axes = new_figure(size=(6.8, 2.7))
     names = list(shares)[::-1]
-    for k, name in enumerate(names):
-        share, interval = shares[name]
+    for k, (share, interval) in enumerate(shares[name] for name in names):
         axes.plot(interval, [k, k], color=BLUE, linewidth=2.5)
         axes.plot(share, k, "o", color=VERMILION, markersize=6)
     axes.set(title="A kitchen, every 8th image", xlabel="frames within 5 cm and 5 degrees [%]", xlim=(0, 102))
@@ -113,15 +109,14 @@ def ablation(shares: dict[str, tuple[float, list[float]]]) -> Figure:
 
 def deviations(track: Track) -> Figure:
     """Every component's error over the images, with three sigma of what the filter expects."""
-    alt = (
-        "Errors of x, y, z and of the turns about three axes over 15 images, all inside the blue bands of three sigma."
-    )
+    alt = """Errors of x, y, z and of the turns about three axes over 15 images, all inside the blue bands of three
+        sigma."""
     figure, grid = new_figure(2, 3, size=(9.4, 4.2))
     for k, axes in enumerate(grid.flat):
         scale, unit = (1000, "mm") if k < 3 else (np.rad2deg(1), "degrees")
         band = 3 * scale * track.error_sigmas[:, k]
         axes.fill_between(np.arange(len(band)), -band, band, color=SKY_BLUE, alpha=0.4)
-        axes.plot(scale * track.deviations[:, k], **small_markers(3))
+        axes.plot(scale * track.deviations[:, k], **(line_style(3) | SMALL))
         axes.set(title=COMPONENTS[k], xlabel="image [-]", ylabel=f"error [{unit}]")
     return described(figure, alt)
 

@@ -60,10 +60,10 @@ def refinement_panel() -> Panel:
     apart.set_cmap(colormaps["PuOr"].with_extremes(bad=(1, 1, 1, 0)))
     figures.colour_bar(figure, apart, off, "r [m]")
     steps = np.arange(STEPS + 1)
-    lines = []
-    for index, name in enumerate(("position [m]", "rotation [10 degrees]")):
-        style = figures.line_style(index) | {"markersize": 4}
-        lines += errors.semilogy(steps, np.ones(STEPS + 1), **style, label=name)
+    lines = [
+        errors.semilogy(steps, np.ones(STEPS + 1), **(figures.line_style(index) | {"markersize": 4}), label=name)[0]
+        for index, name in enumerate(("position [m]", "rotation [10 degrees]"))
+    ]
     (here,) = errors.plot([0], [1], "o", color=figures.VERMILION, markersize=10, fillstyle="none", markeredgewidth=2)
     errors.set(title="Error after each step", xlabel="step [-]", ylabel="error [m or 10 degrees]")
     errors.set(ylim=(1e-3, 10), xlim=(-0.5, STEPS + 0.5), xticks=steps[::2])
@@ -82,12 +82,10 @@ def refinement_panel() -> Panel:
             f"The map as seen after {k} steps, how far measured points lie off its surface, and the error over "
             f"{STEPS} steps, from a start {forward:.2f} m forward, {left:.2f} m left, turned by {turned:.0f} degrees."
         )
-        summary = (
-            f"step {k}: {position[k]:.3f} m and {rotation[k]:.1f} degrees off; median |r| "
-            f"{1000 * np.nanmedian(np.abs(residuals[k])):.0f} mm;  after {STEPS} steps: {position[-1]:.3f} m, "
-            f"{rotation[-1]:.1f} degrees"
-        )
-        return Drawing(live.png(), alt, summary)
+        now = f"{position[k]:.3f} m and {rotation[k]:.1f} degrees off"
+        now += f"; median |r| {1000 * np.nanmedian(np.abs(residuals[k])):.0f} mm"
+        end = f"{position[-1]:.3f} m, {rotation[-1]:.1f} degrees"
+        return Drawing(live.png(), alt, f"step {k}: {now};  after {STEPS} steps: {end}")
 
     return Panel("09 Gauss-Newton", CONTROLS, draw, actions=ACTIONS)
 

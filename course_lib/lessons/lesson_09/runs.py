@@ -1,7 +1,7 @@
 """What lesson 09 measures: clouds, filters on the recording carried by hand, a basin, and a bare corridor."""
 
 import functools
-from typing import NamedTuple
+from collections import namedtuple
 
 import numpy as np
 from scipy.stats import chi2
@@ -9,11 +9,11 @@ from scipy.stats import chi2
 from course_lib.beyond import AnnealedLocalizer
 from course_lib.beyond.six_dof.poses import retract
 from course_lib.beyond.six_dof.refinement import refine
-from course_lib.beyond.six_dof.schedule import STEPS, Level, pyramid
+from course_lib.beyond.six_dof.schedule import STEPS, pyramid
 from course_lib.depth_mcl import DepthCamera, DepthRenderer, MonteCarloLocalizer
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.motion import TANGENT_SPACE
-from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
+from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.lessons.kit.box_world import box_map
 from course_lib.lessons.kit.corridor_views import corridor_map
@@ -27,37 +27,20 @@ SEED = 10_001  # a tuning seed: what is reported comes from stored results
 def cloud_density(n: int, dimensions: int, rng: np.random.Generator) -> tuple[int, float, float]:
     """Return how densely normal clouds of `n` particles fill so many dimensions at their middle.
 
-    Return the dimensions; how many particles lie within half a sigma in the mean over many clouds, n P(chi^2 <= 1/4);
-    and how far the nearest is, in sigmas: the median over 400 clouds.
+    Return the dimensions, the mean number of particles within half a sigma, n P(chi^2 <= 1/4), and the distance of the
+    nearest in sigmas (median over 400 clouds).
     """
     lengths = np.linalg.norm(rng.standard_normal((400, n, dimensions)), axis=-1)
     return dimensions, n * chi2.cdf(0.25, dimensions), float(np.median(lengths.min(axis=1)))
 
 
-@functools.cache
-def hand_run() -> DepthSequence:
-    """Return the recording of the camera carried by hand. It is read once."""
-    return read_sequence(data_path("corridor/hand"))
+# The recording of the camera carried by hand, and the three sizes of its images.
+hand_run = functools.cache(lambda: read_sequence(data_path("corridor/hand")))
+levels = functools.cache(lambda: pyramid(DepthRenderer(corridor_map(), hand_run().camera())))
 
-
-@functools.cache
-def levels() -> list[Level]:
-    """Return the three image sizes of the corridor and the camera carried by hand."""
-    return pyramid(DepthRenderer(corridor_map(), hand_run().camera()))
-
-
-class Track(NamedTuple):
-    """What a filter made of T frames: errors [m], [degrees] (T,), deviations and what it expects of them (T, 6).
-
-    Deviations lead from the estimate to the truth: metres along the world's axes, radians about the body's.
-    """
-
-    estimates: list
-    statuses: list[str]
-    position: np.ndarray
-    rotation: np.ndarray
-    deviations: np.ndarray
-    error_sigmas: np.ndarray
+# Estimates, statuses, errors [m] and [degrees] (T,), deviations from the estimate to the truth and their expected
+# sigmas (T, 6): metres along the world's axes, radians about the body's.
+Track = namedtuple("Track", "estimates statuses position rotation deviations error_sigmas")
 
 
 def localize(

@@ -1,4 +1,4 @@
-"""Stored results in six degrees of freedom, read back: data/corridor/results says which command made each."""
+"""Stored results in six degrees of freedom. data/corridor/results says which command made each."""
 
 import json
 
@@ -7,7 +7,7 @@ from course_lib.paths import data_path
 
 
 def stored(name: str) -> dict:
-    """Return what is stored in `kitchen_six_degrees`, `kitchen_ablation` or `hand_1-5`: "rows", name -> numbers."""
+    """Return `kitchen_six_degrees`, `kitchen_ablation` or `hand_1-5`: "rows", name -> numbers."""
     return json.loads(data_path(f"corridor/results/{name}.json").read_text(encoding="utf-8"))
 
 

@@ -1,18 +1,7 @@
 """Lesson 10, lost and found: a hotel with two rooms alike, kidnappings in it, filters that start anywhere."""
 
-from course_lib.lessons.lesson_10.alternative_texts import ALT
-from course_lib.lessons.lesson_10.figures import (
-    carried_figure,
-    chance_figure,
-    evidence_figure,
-    first_scores_figure,
-    free_space_figure,
-    hotel_figure,
-    kld_figure,
-    told_figure,
-    trade_off_figure,
-)
-from course_lib.lessons.lesson_10.hotel import CAMERA, hotel_map
+from course_lib.lessons.lesson_10 import figures
+from course_lib.lessons.lesson_10.hotel import CAMERA, carried_away, carried_next_door, hotel_map, into_102, leaving_101
 from course_lib.lessons.lesson_10.narrowing import (
     ALPHA,
     BETA,
@@ -21,62 +10,11 @@ from course_lib.lessons.lesson_10.narrowing import (
     coarse,
     coarse_renderer,
     distance_to_either,
-    distances_in_32_directions,
     free_space,
     inside_furniture,
-    leaving_101,
     narrow,
     shares,
     start_anywhere,
 )
 from course_lib.lessons.lesson_10.panel import PANELS, alarm_panel, anywhere_panel
-from course_lib.lessons.lesson_10.stored_trials import stored_table
-from course_lib.lessons.lesson_10.trials import (
-    KIDNAPPINGS,
-    carried_away,
-    carried_next_door,
-    follow,
-    into_102,
-    kidnap,
-    search_run,
-)
-
-__all__ = [
-    "ALPHA",
-    "ALT",
-    "BETA",
-    "CAMERA",
-    "KIDNAPPINGS",
-    "PANELS",
-    "RUNS",
-    "SIGMA",
-    "alarm_panel",
-    "anywhere_panel",
-    "carried_away",
-    "carried_figure",
-    "carried_next_door",
-    "chance_figure",
-    "coarse",
-    "coarse_renderer",
-    "distance_to_either",
-    "distances_in_32_directions",
-    "evidence_figure",
-    "first_scores_figure",
-    "follow",
-    "free_space",
-    "free_space_figure",
-    "hotel_figure",
-    "hotel_map",
-    "inside_furniture",
-    "into_102",
-    "kidnap",
-    "kld_figure",
-    "leaving_101",
-    "narrow",
-    "search_run",
-    "shares",
-    "start_anywhere",
-    "stored_table",
-    "told_figure",
-    "trade_off_figure",
-]
+from course_lib.lessons.lesson_10.trials import KIDNAPPINGS, follow, kidnap, search_run, stored_table

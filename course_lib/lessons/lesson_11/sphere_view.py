@@ -1,7 +1,7 @@
-"""The unit sphere with a panorama on it, drawn for a figure: one look-up per screen pixel.
+"""The unit sphere with a panorama on it, drawn for a figure with one look-up per screen pixel.
 
-The sphere is seen from afar (orthographic), with its near half taken away: you look into the far half from inside, as
-the camera does, so nothing is mirrored. A screen pixel is a direction, and a direction is a pixel of the panorama.
+We see the sphere from afar (orthographic), with its near half taken away. So you look into the far half from inside, as
+the camera does, and nothing is mirrored. A screen pixel is a direction, and a direction is a pixel of the panorama.
 """
 
 import cv2
@@ -9,14 +9,16 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from course_lib.plots.figures import BLACK, BLUE, VERMILION
-from course_lib.spherical_stereo.panorama import direction_from_angles, direction_to_pixel
+from course_lib.spherical_stereo.panorama import azimuth_elevation, direction_from_angles, direction_to_pixel
 
-SIZE = 300  # pixels of the drawn sphere, each way
 LOOK = 150.0  # degrees: azimuth in which one looks at first
-DOWN = np.radians(20)
+_ACROSS = (np.arange(300) + 0.5) / 150 - 1
+_X, _Y = np.meshgrid(_ACROSS, -_ACROSS)  # of the pixels of the drawn sphere, in radii
 _AROUND = np.linspace(-np.pi, np.pi, 121)
-_HORIZON, _SEAM = direction_from_angles(_AROUND, 0.0), direction_from_angles(np.pi, _AROUND / 2)
-_FAR, _NEAR = {"linewidth": 2.2}, {"linewidth": 0.9, "alpha": 0.5}
+_LINES = (  # the horizon and the seam
+    (direction_from_angles(_AROUND, 0.0), {"color": BLUE, "linestyle": "--"}),
+    (direction_from_angles(np.pi, _AROUND / 2), {"color": VERMILION}),
+)
 
 
 def look_up(image_bgr: np.ndarray, directions: np.ndarray, how: int = cv2.INTER_LINEAR) -> np.ndarray:
@@ -35,28 +37,26 @@ class DrawnSphere:
         axes.grid(False)
         axes.set(title="Unit sphere, looked into", xlabel="right [radii]", ylabel="up [radii]", xticks=[], yticks=[])
         axes.set(xlim=(-1.35, 1.35), ylim=(-1.35, 1.35), aspect="equal")
-        self.picture = axes.imshow(np.zeros((SIZE, SIZE, 3), np.uint8), extent=(-1, 1, -1, 1))
-        self.lines = [
-            axes.plot([], [], dashes, color=colour, **half)[0]
-            for colour, dashes in ((BLUE, "--"), (VERMILION, "-"))
-            for half in (_FAR, _NEAR)
-        ]
+        self.picture = axes.imshow(np.zeros((*_X.shape, 3), np.uint8), extent=(-1, 1, -1, 1))
+        halves = {"linewidth": 2.2}, {"linewidth": 0.9, "alpha": 0.5}  # the far half and the near half
+        self.lines = [[axes.plot([], [], **style, **half)[0] for half in halves] for _, style in _LINES]
         self.rays = [axes.plot([], [], color=BLACK, linewidth=1.2)[0] for _ in "xyz"]
-        letters = {"fontsize": 10, "fontweight": "bold", "ha": "center", "va": "center"}
-        self.names = [axes.text(0, 0, name, **letters) for name in "xyz"]
-        self.artists = [self.picture, *self.lines, *self.rays, *self.names]
+        self.names = [axes.text(0, 0, name, fontsize=10, weight="bold", ha="center", va="center") for name in "xyz"]
+        self.artists = [self.picture, *self.lines[0], *self.lines[1], *self.rays, *self.names]
         self.turn(LOOK)
 
     def turn(self, azimuth_deg: float) -> None:
-        """Look at the sphere towards this azimuth, a little downwards."""
-        forward = direction_from_angles(np.radians(azimuth_deg), -DOWN)
+        """Look at the sphere towards this azimuth, 20 degrees downwards."""
+        forward = direction_from_angles(np.radians(azimuth_deg), np.radians(-20))
         right = direction_from_angles(np.radians(azimuth_deg - 90), 0.0)
         self.view = np.stack([right, np.cross(right, forward), forward])
-        self.picture.set_data(self.far_half())
-        for line, (far, near) in ((_HORIZON, self.lines[:2]), (_SEAM, self.lines[2:])):
-            is_near = self.is_near(line)[:, None]
-            far.set_data(*np.where(is_near, np.nan, self.on_screen(line)).T)
-            near.set_data(*np.where(is_near, self.on_screen(line), np.nan).T)
+        rest = 1 - _X**2 - _Y**2
+        seen = look_up(self.image, np.stack([_X, _Y, np.sqrt(np.maximum(rest, 0))], -1) @ self.view, cv2.INTER_NEAREST)
+        self.picture.set_data(np.where(rest[..., None] > 0, seen, np.uint8(255))[..., ::-1])
+        for (directions, _), (far, near) in zip(_LINES, self.lines, strict=True):
+            is_near, line = self.is_near(directions)[:, None], self.on_screen(directions)
+            far.set_data(*np.where(is_near, np.nan, line).T)
+            near.set_data(*np.where(is_near, line, np.nan).T)
         for ray, name, end in zip(self.rays, self.names, self.on_screen(np.eye(3)), strict=True):
             ray.set_data([0, end[0]], [0, end[1]])
             name.set_position(end + 0.22 * end / max(np.linalg.norm(end), 1e-9))  # beside a marker there
@@ -66,14 +66,12 @@ class DrawnSphere:
         return directions @ self.view[:2].T
 
     def is_near(self, directions: np.ndarray) -> np.ndarray:
-        """Return which directions `(..., 3)` lie on the near half, the one that is taken away."""
+        """Return which directions `(..., 3)` lie on the near half, which is taken away."""
         return directions @ self.view[2] < 0
 
-    def far_half(self) -> np.ndarray:
-        """Return the far half with the panorama on it, `(SIZE, SIZE, 3)` uint8 RGB, white around it."""
-        across = (np.arange(SIZE) + 0.5) / SIZE * 2 - 1
-        x, y = np.meshgrid(across, -across)
-        rest = 1 - x**2 - y**2
-        directions = np.stack([x, y, np.sqrt(np.maximum(rest, 0))], axis=-1) @ self.view
-        drawn = look_up(self.image, directions, cv2.INTER_NEAREST)
-        return np.where(rest[..., None] > 0, drawn, np.uint8(255))[..., ::-1]
+
+def circle_around(direction: np.ndarray) -> np.ndarray:
+    """Return directions `(73, 3)` of a circle of 10 degrees around a direction: round on the sphere."""
+    left = direction_from_angles(azimuth_elevation(direction)[0] + np.pi / 2, 0.0)
+    t, radius = np.linspace(0, 2 * np.pi, 73)[:, None], np.radians(10)
+    return np.cos(radius) * direction + np.sin(radius) * (np.cos(t) * left + np.sin(t) * np.cross(direction, left))

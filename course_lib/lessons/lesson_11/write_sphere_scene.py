@@ -1,9 +1,9 @@
-"""Write the interactive scene of lesson 11: a panorama beside the unit sphere, one point on both, to be dragged.
+"""Write notebooks/scenes/11_sphere.html: a panorama beside the unit sphere, and one point to drag on both.
 
     python -m course_lib.lessons.lesson_11.write_sphere_scene
 
-writes notebooks/scenes/11_sphere.html: `sphere_scene.html` with the picture inside, which needs no network and no
-kernel. The other lessons' scenes are made with PyVista: those can be turned, but nothing in them can be dragged.
+It is `sphere_scene.html` with the picture inside, and needs no network and no kernel. Nothing in PyVista's scenes can
+be dragged, so this one is written by hand.
 """
 
 import base64

@@ -1,14 +1,10 @@
 """Lesson 12, detecting objects: a sofa that the seam cuts, thresholds, and the hue and saturation of a box."""
 
+# ruff: noqa: I001 (short lines)
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.lessons.kit.room_photographs import the_image
-from course_lib.lessons.lesson_12.figures import crops_figure, idea_figure, threshold_figure, training_figure
-from course_lib.lessons.lesson_12.measures import (
-    anchors,
-    colours_against_map,
-    hues_and_saturations,
-    precision_and_recall,
-    training_picture,
-)
-from course_lib.lessons.lesson_12.panel import PANELS, hue_panel, seam_panel
-from course_lib.lessons.lesson_12.seam_cuts import cut_counts, cut_sofa, cut_table, said_of_the_sofa, true_object
+from course_lib.lessons.lesson_12.figures import PANELS, crops_figure, hue_panel, idea_figure, seam_panel
+from course_lib.lessons.lesson_12.figures import threshold_figure, training_figure
+from course_lib.lessons.lesson_12.measures import anchors, colours_against_map, hues_and_saturations, training_picture
+from course_lib.lessons.lesson_12.measures import cut_counts, cut_sofa, cut_table, precision_and_recall
+from course_lib.lessons.lesson_12.measures import said_of_the_sofa, true_object

@@ -1,9 +1,9 @@
 """Lesson 13, matching two spheres: one object of the upper panorama, its band and its matches in the lower one."""
 
+# ruff: noqa: I001 (short lines)
 from course_lib.lessons.kit.panorama_features import scene
 from course_lib.lessons.kit.room_photographs import pair_of
-from course_lib.lessons.lesson_13.figures import counts_figure, idea_figure, matched_figure
-from course_lib.lessons.lesson_13.matching import PLACES, WAYS, matches_when_turned, object_names, score
-from course_lib.lessons.lesson_13.panel import PANELS, matching_panel
-from course_lib.lessons.lesson_13.scenes import SPHERES, half_circle, upright_plane
-from course_lib.lessons.lesson_13.turned import negative_scene, plain_object, turned_scene
+from course_lib.lessons.lesson_13.figures import PANELS, SPHERES, counts_figure, half_circle, idea_figure
+from course_lib.lessons.lesson_13.figures import matched_figure, matching_panel, upright_plane
+from course_lib.lessons.lesson_13.matching import PLACES, WAYS, matches_when_turned, negative_scene, object_names
+from course_lib.lessons.lesson_13.matching import plain_object, score, turned_scene

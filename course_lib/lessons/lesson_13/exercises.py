@@ -1,12 +1,9 @@
 """Exercises of lesson 13: the row in the lower image, a rig of any direction, pairs and ties, a turned camera."""
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.exercises import Exercise
-
-# 13.1: the row in the lower image
 
 
 def row_below(v, horizontal_range, baseline, height):
@@ -20,9 +17,6 @@ def row_below(v, horizontal_range, baseline, height):
 def rows(rng: np.random.Generator) -> tuple:
     height = int(rng.choice([320, 640, 960]))
     return rng.uniform(0.3, 0.9, 5) * height, rng.uniform(0.6, 5.0), rng.uniform(0.1, 0.6), height
-
-
-# 13.2: how far a direction misses the epipolar half-circle of another, for a rig of any direction
 
 
 def miss(x_upper, x_lower, baseline):
@@ -41,12 +35,12 @@ def unit(vectors):
 
 
 def across(directions, baseline):
-    """The part of each direction at a right angle to the baseline, of length 1."""
+    """Return the part of each direction at a right angle to the baseline, with length 1."""
     return unit(directions - np.outer(directions @ baseline, baseline))
 
 
 def two_cameras(rng: np.random.Generator, baseline=None) -> tuple:
-    """Nine pairs: three near the half-circle, three anywhere, three on the other half."""
+    """Return nine pairs: six near the half-circle, three on the other half."""
     baseline = unit(rng.normal(size=3)) if baseline is None else baseline
     first = across(rng.normal(size=(9, 3)), baseline)
     ahead = first * np.where(np.arange(9) < 6, 1, -1)[:, None]
@@ -54,22 +48,11 @@ def two_cameras(rng: np.random.Generator, baseline=None) -> tuple:
     return unit(first + np.outer(rng.uniform(-1.5, 1.5, 9), baseline)), unit(second), baseline
 
 
-def an_upright_rig(rng: np.random.Generator) -> tuple:
-    return two_cameras(rng, np.array([0.0, 0.0, 1.0]))
-
-
-def cameras_side_by_side(rng: np.random.Generator) -> tuple:
-    return two_cameras(rng, np.array([0.0, 1.0, 0.0]))
-
-
-def pairs_that_obey_exactly_and_directions_near_the_poles(rng: np.random.Generator) -> tuple:
+def exact_pairs_and_poles(rng: np.random.Generator) -> tuple:
     first, _, baseline = two_cameras(rng)
     second = unit(across(first, baseline) + np.outer(np.linspace(-2, 2, 9), baseline))
     second[:2] = unit(np.stack([baseline, -baseline]) + rng.normal(0, 1e-3, (2, 3)))
     return first, second, baseline
-
-
-# 13.3: one-to-one by most matches
 
 
 def partners(counts):
@@ -87,7 +70,7 @@ def partners(counts):
 
 
 def tables(rng: np.random.Generator) -> tuple:
-    """Counts with a tie or without, a row of zeros now and then, and rows that want one column."""
+    """Return counts with a tie or without, a row of zeros now and then, and two rows that want one column."""
     n, m = int(rng.integers(3, 6)), int(rng.integers(3, 6))
     counts = rng.permutation(np.arange(1, n * m + 1)).reshape(n, m) * 2
     counts[0, 0], counts[1, 0] = 90, 80  # both rows want the first column
@@ -99,50 +82,6 @@ def tables(rng: np.random.Generator) -> tuple:
         counts[place] = 75
     # In any order: else the first row and column would be a pair in every table, which a loop too long also finds.
     return (counts[rng.permutation(n)][:, rng.permutation(m)],)
-
-
-def a_tie_that_goes_on_from_row_to_row(rng: np.random.Generator) -> tuple:
-    return (np.array([[6, 6, 0], [0, 6, 2], [0, 0, 1]]),)
-
-
-def a_table_of_zeros(rng: np.random.Generator) -> tuple:
-    return (np.zeros((2, 3), int),)
-
-
-def a_table_of_one_count(rng: np.random.Generator) -> tuple:
-    return (np.array([[3]]),)
-
-
-def place_by_place(counts, rounds=99, least=1, struck=0, ties=False):
-    """Mistakes: repeated `argmax`, as in the lesson; ties: it pairs no tie, but takes out one row and one column."""
-    counts, result = np.array(counts), np.full(len(counts), -1)
-    for _ in range(rounds):
-        i, j = np.unravel_index(counts.argmax(), counts.shape)
-        if counts[i, j] < least:
-            break
-        largest = counts == counts[i, j]
-        result[i] = -1 if ties and max(largest[i].sum(), largest[:, j].sum()) > 1 else j
-        counts[i], counts[:, j] = struck, struck
-    return result
-
-
-def row_by_row(counts):
-    counts, result = np.array(counts), np.full(len(counts), -1)
-    for i in range(len(counts)):
-        if counts[i].max() > 0:
-            result[i] = counts[i].argmax()
-            counts[:, result[i]] = 0
-    return result
-
-
-def largest_sum(counts):
-    result = np.full(len(counts), -1)
-    rows, columns = linear_sum_assignment(counts, maximize=True)
-    result[rows] = np.where(counts[rows, columns] > 0, columns, -1)
-    return result
-
-
-# 13.4: a lower camera that is turned
 
 
 def turn_of_the_lower(azimuth_upper, azimuth_lower):
@@ -158,7 +97,7 @@ def turn_of_the_lower(azimuth_upper, azimuth_lower):
 
 
 def matches(rng: np.random.Generator, turn=None, n=None, noise=None, wrong=None) -> tuple:
-    """Azimuths of n matches that differ by turn and noise, degrees; wrong: share of those that lie anywhere."""
+    """Return azimuths of n matches that differ by turn and noise [degrees]. A share `wrong` of them lies anywhere."""
     n = int(rng.integers(80, 200)) if n is None else n
     turn = rng.uniform(-180, 180) if turn is None else turn
     noise, wrong = noise or rng.uniform(0.1, 0.4), wrong or rng.uniform(0.2, 0.5)
@@ -169,46 +108,31 @@ def matches(rng: np.random.Generator, turn=None, n=None, noise=None, wrong=None)
     return upper, wrap_angle(lower)
 
 
-MANY = 1500
-"""So many matches, half of them wrong, tell an error bar from one that is off by the root of two."""
-
-
-def many_matches(rng: np.random.Generator) -> tuple:
-    return matches(rng, 40.0, MANY, noise=0.3, wrong=0.5)
-
-
-def a_turn_of_nearly_half_a_circle(rng: np.random.Generator) -> tuple:
-    return matches(rng, turn=179.9)
+MANY = 1500  # so many matches, half of them wrong, tell an error bar from one that is off by the root of two
 
 
 def misjudged(arguments: tuple, answer: object) -> str | None:
-    """What is wrong with a turn and its standard error, against those of the matches that agree."""
+    """Say what is wrong with a turn and its standard error, compared with the solution's."""
     try:
         turn, error = (float(np.asarray(part, dtype=float).reshape(())) for part in answer)
     except (TypeError, ValueError):
         return "Give two numbers, separated by a comma: the turn and its standard error, degrees."
     wanted, se = turn_of_the_lower(*arguments)
     n, far = len(arguments[0]), max(4 * se, 0.1)  # a wrong match or two that happen to lie near may pull so much
-
-    def off(angle):
-        return abs((angle - wanted + 180) % 360 - 180)
-
-    complaints = [
-        (not np.isfinite([turn, error]).all(), "There is a NaN or an infinity: is a mean taken of nothing?"),
-        (
-            off(-turn) <= far < off(turn),
-            "Your turn has the wrong sign: if a camera turns left, all moves to the right.",
-        ),
-        (off(np.degrees(turn)) <= far < off(turn), "Your turn is in radians; the task asks for degrees."),
-        (off(turn) > far, "Your turn is over four standard errors off: wrong matches pull at it, or the seam does."),
-        (not -180 - 1e-9 <= turn < 180 + 1e-9, "The turn is right but for whole turns: bring it to [-180, 180)."),
-        (error < 0.5 * se, "Your standard error is less than half of what it must be. What do you divide by?"),
-        (n >= MANY and error < 0.8 * se, "Your standard error is too small: did wrong matches help to make it so?"),
-        (0.4 < error / se / np.sqrt(n) < 2, "That is about the spread of one match. The mean of many is surer."),
-        (error > 3 * se, "Your standard error is far too large: do wrong matches add to the spread?"),
-        (n >= MANY and error > 1.6 * se, "Your standard error is too large: one deviation, no 95 % interval."),
-    ]
-    return next((sentence for is_so, sentence in complaints if is_so), None)
+    off, off_turned, off_radians = abs((np.array([turn, -turn, np.degrees(turn)]) - wanted + 180) % 360 - 180)
+    complaints = {
+        "There is a NaN or an infinity: is a mean taken of nothing?": not np.isfinite([turn, error]).all(),
+        "Your turn has the wrong sign: if a camera turns left, all moves to the right.": off_turned <= far < off,
+        "Your turn is in radians; the task asks for degrees.": off_radians <= far < off,
+        "Your turn is over four standard errors off: wrong matches pull at it, or the seam does.": off > far,
+        "The turn is right but for whole turns: bring it to [-180, 180).": not -180 - 1e-9 <= turn < 180 + 1e-9,
+        "Your standard error is less than half of what it must be. What do you divide by?": error < 0.5 * se,
+        "Your standard error is too small: did wrong matches help to make it so?": n >= MANY and error < 0.8 * se,
+        "That is about the spread of one match. The mean of many is surer.": 0.4 < error / se / np.sqrt(n) < 2,
+        "Your standard error is far too large: do wrong matches add to the spread?": error > 3 * se,
+        "Your standard error is too large: one deviation, no 95 % interval.": n >= MANY and error > 1.6 * se,
+    }
+    return next((sentence for sentence, is_so in complaints.items() if is_so), None)
 
 
 # fmt: off
@@ -224,72 +148,52 @@ EXERCISES = [
         np.arctan(np.tan(e_u) + baseline / horizontal_range) => np.tan(e_u) + baseline / horizontal_range
         You have the tangent of e_l. Turn it into an angle before you ask for its row.
         (0.5 - e_l / np.pi) * height => e_l
-        (0.5 - e_l / np.pi) * height => np.degrees(e_l)
         That is an elevation; the task asks for the row in pixels.
         (0.5 - e_l / np.pi) * height => v - (0.5 - e_l / np.pi) * height
-        That is by how many rows a point moves. Asked is the row itself.
-        (0.5 - e_l / np.pi) * height => np.round((0.5 - e_l / np.pi) * height)
-        Rows are edge coordinates here, with fractions: do not round them.
+        You say by how many rows a point moves. The task asks for the row itself.
         np.tan(e_u) => np.tan(np.degrees(e_u))
         np.tan takes radians; you give it degrees.
-        baseline / horizontal_range => horizontal_range / baseline
-        baseline / horizontal_range => baseline * horizontal_range
-        Near points move more: it is baseline / range.
         0.5 - e_l => 0.5 + e_l
         Your picture is upside down: row 0 is straight up, so a row falls as the elevation grows.
         * np.pi => * 2 * np.pi and also e_l / np.pi => e_l / (2 * np.pi)
         All rows together span pi, from straight up to straight down; the 2 pi belong to the columns.
-        ... => return row_below(v, horizontal_range, baseline, 640)
-        ... => return row_below(v, horizontal_range, 0.3, height)
-        The height of the panorama or the baseline is a constant in yours: use the argument.
-        ... => return v
-        These are the rows of the upper image. The lower camera sees every point higher.
     """),
-    Exercise("13.2", miss, two_cameras, cases=[
-        an_upright_rig, cameras_side_by_side, pairs_that_obey_exactly_and_directions_near_the_poles,
-    ], mistakes="""
+    Exercise("13.2", miss, two_cameras, cases={
+        "an upright rig": lambda rng: two_cameras(rng, np.array([0.0, 0.0, 1.0])),
+        "cameras side by side": lambda rng: two_cameras(rng, np.array([0.0, 1.0, 0.0])),
+        "pairs that obey exactly and directions near the poles": exact_pairs_and_poles,
+    }, mistakes="""
         np.cross(baseline, ahead) => np.cross(baseline, x_upper)
         The halves are right. But b x x_upper is shorter than 1: make it a unit vector before the arcsine.
-        ... => return np.abs(np.cross(x_upper, x_lower) @ baseline)
         ... => return np.arcsin(np.abs(np.cross(x_upper, x_lower) @ baseline))
         Equation (13.1) is 0 where it should be, but no angle yet: a unit vector b x x_upper, an arcsine, one half.
         ... => return np.maximum(miss(x_upper, x_lower, baseline), miss(x_lower, x_upper, baseline))
-        That is the larger of the two ways, as in (13.2). Asked is the way from x_lower only.
-        ... => return np.pi / 2 - miss(x_upper, x_lower, baseline)
-        That is a right angle less the angle asked for: an arccosine in place of an arcsine?
+        That is the larger of the two ways, as in (13.2). The task asks for the way from x_lower only.
         np.where(np.sum(ahead * x_lower, axis=1) >= 0, to_plane, to_pole) => to_plane
-        np.where(np.sum(ahead * x_lower, axis=1) >= 0, to_plane, to_pole) => np.arcsin(np.sum(normal * x_lower, axis=1))
         That is the angle to the whole circle. The half behind is forbidden: there the way ends at a pole.
         to_plane, to_pole => to_plane, np.pi / 2
-        to_plane, to_pole => to_plane, np.pi
-        to_plane, to_pole => to_plane, np.pi - to_plane
         to_plane, to_pole => to_plane, np.arccos(x_lower @ baseline)
         On the other half the nearest point is one of two poles, +b or -b: give the angle to the nearer one.
         np.arccos => np.arcsin
         On the other half you give |e|. The way to the pole is the rest to a right angle.
         np.sum(ahead * x_lower => np.sum(x_upper * x_lower
         Which half? Compare with the part of x_upper at a right angle to b, not with x_upper itself.
-        ... => return miss(x_upper, x_lower, np.array([0.0, 0.0, 1.0]))
-        Your baseline is always upright: use the argument.
         np.arcsin(np.clip(np.abs(np.sum(normal * x_lower, axis=1)), 0, 1)) => np.abs(np.sum(normal * x_lower, axis=1))
         On the right half that is the sine of the angle: the arcsine is missing.
     """),
-    Exercise("13.3", partners, tables, cases=[
-        a_tie_that_goes_on_from_row_to_row, a_table_of_zeros, a_table_of_one_count,
-    ], mistakes="""
+    Exercise("13.3", partners, tables, cases={
+        "a tie that goes on from row to row": lambda rng: (np.array([[6, 6, 0], [0, 6, 2], [0, 0, 1]]),),
+        "two objects that share nothing": lambda rng: (np.array([[5, 3], [2, 0]]),),
+        "a table of zeros": lambda rng: (np.zeros((2, 3), int),), "one count": lambda rng: (np.array([[3]]),),
+    }, mistakes="""
         np.nonzero(alone) => np.nonzero(largest & (largest.sum() == 1))
         Equal counts in different rows and different columns are no tie: nobody has to choose.
-        ... => return counts.argmax(axis=1)
         ... => return np.where(counts.max(axis=1) > 0, counts.argmax(axis=1), -1)
         You give every row its best column. One-to-one: a column that is taken is taken.
-        ... => return place_by_place(counts)
+        largest = table == table.max() => largest = np.arange(table.size).reshape(table.shape) == table.argmax()
         Of a tie you take what comes first in the list. Any choice is a guess: both are left out.
-        ... => return place_by_place(counts, least=0, struck=-1)
-        ... => return place_by_place(counts, least=0, rounds=min(counts.shape))
-        ... => return place_by_place(counts, least=0, rounds=len(counts))
-        You pair objects that share no feature. When all counts left are 0, argmax says row 0, column 0: stop at 0.
-        ... => return place_by_place(counts, ties=True)
-        Of a tie you take out one row and one column. All rows and columns that such counts join are out.
+        np.array(counts), np => np.array(counts) + 1, np
+        You pair objects that share no feature: stop when the largest count left is 0.
         & (largest.sum(axis=0) == 1) =>
         You see ties in a row. Two rows with equally many matches for one column are a tie as well.
         & (largest.sum(axis=1, keepdims=True) == 1) =>
@@ -300,16 +204,13 @@ EXERCISES = [
         table[largest.any(axis=1)] = 0 =>
         table[:, largest.any(axis=0)] = 0 =>
         A row that has its partner is out, and so is its column: strike out both.
-        np.full(len(counts), -1) => np.full(len(counts), np.nan)
         np.full(len(counts), -1) => np.zeros(len(counts), int)
-        Rows without a partner must hold -1: not NaN, and not 0, which is a column.
-    """, functions={
-        row_by_row: "Not row after row: the largest count of the whole table comes first.",
-        largest_sum: "That is the assignment with the largest sum. Here the largest count of all comes first.",
-    }),
-    Exercise("13.4", turn_of_the_lower, matches, "challenge", verify=misjudged, cases=[
-        many_matches, a_turn_of_nearly_half_a_circle,
-    ], mistakes="""
+        Rows without a partner must hold -1: not 0, which is a column.
+    """),
+    Exercise("13.4", turn_of_the_lower, matches, "challenge", verify=misjudged, cases={
+        "many matches": lambda rng: matches(rng, 40.0, MANY, noise=0.3, wrong=0.5),
+        "a turn of nearly half a circle": lambda rng: matches(rng, turn=179.9),
+    }, mistakes="""
         good = near[np.abs(near) < 1.5] => about, good = 0, gap
         A plain mean of all: wrong matches pull at it, and the seam does.
         good = near[np.abs(near) < 1.5] => good = near
@@ -317,7 +218,7 @@ EXERCISES = [
         about + good.mean() => np.median(gap) and also good = near[np.abs(near) < 1.5] => good = gap
         A median survives wrong matches, but not the seam, and its spread holds them all.
         return turn, good => return turn, gap
-        The turn is right. Your error bar is that of all matches: the wrong ones blow it up.
+        The turn is right. Your error bar is the one of all matches: the wrong ones blow it up.
         good.std(ddof=1) / np.sqrt(len(good)) => good.var(ddof=1) / len(good)
         The turn is right. Your error bar is a variance: take its root.
     """),

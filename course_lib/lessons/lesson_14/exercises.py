@@ -4,8 +4,6 @@ import numpy as np
 
 from course_lib.lessons.kit.exercises import Exercise
 
-# 14.1: X from two boxes
-
 
 def place(box_upper, box_lower, width, baseline):
     """Place X = d x_hat (3,) in metres of the object in two boxes."""
@@ -17,7 +15,7 @@ def place(box_upper, box_lower, width, baseline):
 
 
 def two_boxes(rng: np.random.Generator, turn=None, wide=0.05) -> tuple:
-    """Boxes of one object around the rig, whose centres differ in azimuth as real boxes' do.
+    """Return boxes of one object, whose centres differ in azimuth as the centres of real boxes do.
 
     turn: column of the upper centre, and wide: greatest half width, both as shares of the panorama's width.
     """
@@ -32,17 +30,10 @@ def two_boxes(rng: np.random.Generator, turn=None, wide=0.05) -> tuple:
 
 
 def boxes_across_the_seam(rng: np.random.Generator) -> tuple:
-    """Boxes that begin before the right edge and end behind it: u_max is greater than the width."""
+    """Return boxes that begin before the right edge and end behind it, where u_max is greater than the width."""
     upper, lower, width, baseline = two_boxes(rng, turn=0.99)
     upper[2], lower[2] = width + rng.uniform(0.01, 0.05, 2) * width
     return upper, lower, width, baseline
-
-
-def boxes_near_the_left_edge(rng: np.random.Generator) -> tuple:
-    return two_boxes(rng, turn=0.04, wide=0.03)
-
-
-# 14.2: the standard deviation of a range
 
 
 def range_sigma(rho, e_u, e_l, baseline, sigma, sigma_baseline):
@@ -60,21 +51,6 @@ def triangles(rng: np.random.Generator) -> tuple:
     return rho, e_u, e_l, baseline, rng.uniform(0.001, 0.01)
 
 
-def triangles_and_a_baseline(rng: np.random.Generator) -> tuple:
-    return *triangles(rng), rng.uniform(0.002, 0.02)
-
-
-def exact_baseline(rng: np.random.Generator) -> tuple:
-    return *triangles(rng), 0.0
-
-
-def exact_angles(rng: np.random.Generator) -> tuple:
-    return *triangles(rng)[:4], 0.0, 0.01
-
-
-# 14.3: one range from many matches
-
-
 def range_from_matches(e_u, e_l, baseline):
     """Horizontal range in metres from matched features (n,), robustly; NaN if all of them diverge."""
     # The median of the slopes, then eq. (14.3); the mean of the slopes near it would do as well.
@@ -83,7 +59,7 @@ def range_from_matches(e_u, e_l, baseline):
 
 
 def matches(rng: np.random.Generator, n=None, strangers=None, parallax=(-0.3, 0.03)) -> tuple:
-    """Matches of one object, an even number; one in four is of something else, and that one may even diverge."""
+    """Return matches of one object, an even number. One in four is of something else, and may even diverge."""
     n = 2 * int(rng.integers(3, 7)) if n is None else n
     baseline, rho, z = rng.uniform(0.2, 0.5), rng.uniform(1.5, 4.0), rng.uniform(-1.3, -0.2, n)
     e_u, e_l = np.arctan2(z, rho), np.arctan2(z + baseline, rho) + 0.004 * rng.uniform(-1, 1, n)
@@ -92,39 +68,26 @@ def matches(rng: np.random.Generator, n=None, strangers=None, parallax=(-0.3, 0.
     return e_u, e_l, baseline
 
 
-def one_match_far_off(rng: np.random.Generator) -> tuple:
-    return matches(rng, 5, 1, parallax=(0.5, 0.6))
-
-
 def a_stranger_comes_first(rng: np.random.Generator) -> tuple:
-    """The lowest feature is matched wrongly, so that the medians of both sides belong to different features."""
+    """Return a wrong match of the lowest feature, so that the medians of both sides belong to different features."""
     e_u, e_l, baseline = matches(rng, 9, 0)
     order = np.argsort(e_u)
     e_l[order[0]] = e_u[order[0]] + 0.55
     return e_u[order], e_l[order], baseline
 
 
-def all_matches_diverge(rng: np.random.Generator) -> tuple:
-    e_u, e_l, baseline = matches(rng, 8, 0)
-    return e_l, e_u, baseline
-
-
 def refused_range(arguments: tuple, answer: object) -> str | None:
-    """What is wrong with one range of matched features, or None: it must lie among those of the majority."""
+    """Say what is wrong with a range of matched features: it must lie among the ranges of the majority."""
     e_u, e_l, baseline = arguments
     if np.size(answer) != 1 or np.asarray(answer).dtype.kind not in "iuf":
         return "One range is asked for, a single number for all matches together."
     value, slopes = float(np.reshape(answer, ())), np.tan(e_l) - np.tan(e_u)
     if (slopes <= 0).all():
         return None if np.isnan(value) else "Where the matches diverge there is no range: the answer is NaN, no number."
-    own = slopes[np.abs(slopes - np.median(slopes)) <= 0.05]
-    nearest, farthest = baseline / own.max(), baseline / own[own > 0].min()
-    if nearest * (1 - 1e-5) <= value <= farthest * (1 + 1e-5):
+    own = slopes[(np.abs(slopes - np.median(slopes)) <= 0.05) & (slopes > 0)]
+    if baseline / own.max() * (1 - 1e-5) <= value <= baseline / own.min() * (1 + 1e-5):
         return None
     return "Your range lies outside of what most of the matches say: is it in metres, and does one stranger move it?"
-
-
-# 14.4: the mean error of a range
 
 
 def mean_error(rho, e_u, e_l, baseline, sigma):
@@ -136,7 +99,7 @@ def mean_error(rho, e_u, e_l, baseline, sigma):
 
 
 def rays_as_far_above_the_horizon_as_below(rng: np.random.Generator) -> tuple:
-    """The tangents' part is the same from both."""
+    """Return triangles where both tangents' parts are the same."""
     baseline, rho = rng.uniform(0.1, 0.6), rng.uniform(2.0, 6.0, 3)
     e = np.arctan2(baseline / 2, rho)
     return rho, -e, e, baseline, rng.uniform(0.001, 0.01)
@@ -144,134 +107,86 @@ def rays_as_far_above_the_horizon_as_below(rng: np.random.Generator) -> tuple:
 
 # fmt: off
 EXERCISES = [
-    Exercise("14.1", place, two_boxes, "warm-up", cases=[boxes_across_the_seam, boxes_near_the_left_edge], mistakes="""
+    Exercise("14.1", place, two_boxes, "warm-up", cases={
+        "boxes across the seam": boxes_across_the_seam,
+        "boxes near the left edge": lambda rng: two_boxes(rng, turn=0.04, wide=0.03),
+    }, mistakes="""
         np.cos(e_u) * np.cos(a), np.cos(e_u) * np.sin(a), np.sin(e_u) => np.cos(a), np.sin(a), np.tan(e_u)
         You go d along the floor. d runs along the slanted ray; along the floor it is d cos e_u.
-        baseline * np.cos(e_l) / np.sin(e_l - e_u) => baseline / (e_l - e_u) / np.cos(e_u)
-        baseline / (e_l - e_u) holds for level rays alone. Take eq. (14.1), or the tangents of (14.3).
         baseline * np.cos(e_l) / np.sin(e_l - e_u) => baseline / (np.tan(e_l) - np.tan(e_u))
         You go the horizontal range along a slanted direction: multiply by d.
         return d => e_u = e_l; return d
-        (u, v), (_, v_lower) => (_, v), (u, v_lower) and also return d => e_u = e_l; return d
-        d is measured from the upper camera, so it goes with the upper direction.
-        (u, v), (_, v_lower) => (_, v), (u, v_lower)
+        You measure d from the upper camera, so it goes with the upper direction.
         u / width => (u + (box_lower[0] + box_lower[2]) / 2) / 2 / width
         d belongs to the upper camera's ray, and so does the azimuth: not the lower box's, and no average.
         box[2:]) / 2 => box[2:] % [width, np.inf]) / 2
-        box[2:]) / 2 => np.minimum(box[2:], [width, np.inf])) / 2
         Across the seam u_max is greater than the width, and means it: with a remainder or a cut the middle jumps.
-        in (box_upper, box_lower)] => in (box_lower, box_upper)]
         np.sin(e_l - e_u) => np.sin(e_u - e_l)
         Your point lies behind the camera: the angle at the point is e_l - e_u. Or did you exchange the boxes?
-        d = => a, e_u, e_l = np.rad2deg([a, e_u, e_l]); d =
-        np.sin and np.cos take radians; yours are given degrees.
         baseline * np.cos(e_l) => baseline * np.cos(e_u)
-        baseline * np.cos(e_l) => baseline
-        baseline * np.cos(e_l) / np.sin => baseline / np.tan
         Above the fraction line of d stands the cosine of the lower elevation: look at the law of sines once more.
-        return d * => return
-        That is the unit vector alone. Multiply it by the distance d.
         0.5 - u / width => u / width - 0.5
         Left and right are swapped: azimuth decreases to the right, a = (1/2 - u/W) 2 pi.
         (box[:2] + box[2:]) / 2 => box[:2]
         You took the boxes' corners (u_min, v_min); the centre is the mean of both corners.
-        0.5 - 2 * v / width => 2 * v / width - 0.5 and also 0.5 - 2 * v_lower / width => 2 * v_lower / width - 0.5
-        Your elevations are upside down: row 0 is straight up, e = (1/2 - v/H) pi.
-        2 * v / width) => 2 * v / width) * 2 and also 2 * v_lower / width) => 2 * v_lower / width) * 2
-        The rows span pi, from straight up to straight down; only the columns span 2 pi.
         2 * v / width => v / width and also 2 * v_lower / width => v_lower / width
         You divide the row by the width. A panorama is half as high as it is wide: H = W / 2.
-        ... => return place(box_upper, box_lower, width, 0.3)
-        ... => return place(box_upper, box_lower, 1280, baseline)
-        Your baseline is always 0.3 m, or your panorama always 1280 columns wide: use the arguments.
     """),
-    Exercise("14.2", range_sigma, triangles_and_a_baseline, cases=[exact_baseline, exact_angles], mistakes="""
+    Exercise("14.2", range_sigma, lambda rng: (*triangles(rng), rng.uniform(0.002, 0.02)), cases={
+        "exact baseline": lambda rng: (*triangles(rng), 0.0),
+        "exact angles": lambda rng: (*triangles(rng)[:4], 0.0, 0.01),
+    }, mistakes="""
         by_baseline = rho / baseline => by_baseline = (rho / baseline) ** 2
-        by_baseline = rho / baseline => by_baseline = rho**2 / baseline
         The range is proportional to the baseline: differentiate B / slope by B, and put rho = B / slope in.
-        by_baseline = rho / baseline * sigma_baseline => by_baseline = sigma_baseline
-        by_baseline = rho / baseline => by_baseline = 1 / baseline
-        A baseline 1 % too long makes every range 1 % too long: its error grows with the range.
         + by_baseline**2 =>
         The baseline is not known exactly either: its error is still missing.
-        np.sqrt(by_upper**2 + by_lower**2 + by_baseline**2) => np.sqrt(by_upper**2 + by_lower**2) + by_baseline
-        The baseline's error is independent of the angles': it joins them under the root, as a square.
-        by_upper**2 + by_lower**2 => (by_upper + by_lower) ** 2
-        by_upper**2 + by_lower**2 => (by_upper - by_lower) ** 2
         np.sqrt(by_upper**2 + by_lower**2 + by_baseline**2) => by_upper + by_lower + by_baseline
         Independent errors neither cancel nor simply add up: take the root of the sum of their squares.
-        np.cos(e_u) => np.cos(np.deg2rad(e_u)) and also np.cos(e_l) => np.cos(np.deg2rad(e_l))
-        ... => return range_sigma(rho, np.deg2rad(e_u), np.deg2rad(e_l), baseline, np.deg2rad(sigma), sigma_baseline)
-        The elevations and sigma are radians already: yours are turned into radians once more.
         / np.cos(e_u) ** 2 => and also / np.cos(e_l) ** 2 =>
         That holds for level rays. Each elevation counts with 1 / cos^2 of its own.
         np.cos(e_u) ** 2 => np.cos(e_u) and also np.cos(e_l) ** 2 => np.cos(e_l)
         Under the root stands the square of 1 / cos^2, which is 1 / cos^4.
-        / np.cos(e_u) => * np.cos(e_u) and also / np.cos(e_l) => * np.cos(e_l)
-        The cosines stand below the fraction line: steep rays make the error larger.
         by_upper**2 + by_lower**2 => by_upper**2
-        by_upper**2 + by_lower**2 => by_lower**2
         The noise of one camera alone is in it; the other one's belongs there too.
         rho**2 / baseline => rho / baseline
         The angles' error grows with the square of the range.
         rho**2 / baseline => rho**2 / baseline**2
         The baseline counts once: twice the baseline, half the error.
+        np.sqrt(by_upper**2 + by_lower**2 + by_baseline**2) => np.sqrt(by_upper**2 + by_lower**2) + by_baseline
+        The baseline's error is independent of the others, too: its part adds as a square, under the root.
+        rho / baseline * sigma_baseline => rho**2 / baseline * sigma_baseline
+        The baseline's part is too large by a factor of rho. Differentiate rho = B / s by B, with the slope s fixed.
     """),
-    Exercise("14.3", range_from_matches, matches, verify=refused_range, cases=[
-        one_match_far_off, a_stranger_comes_first, all_matches_diverge,
-    ], mistakes="""
+    Exercise("14.3", range_from_matches, matches, verify=refused_range, cases={
+        "one match far off": lambda rng: matches(rng, 5, 1, parallax=(0.5, 0.6)),
+        "a stranger comes first": a_stranger_comes_first,
+        "all matches diverge": lambda rng: (np.array([0.1, 0.2]), np.array([0.0, 0.1]), 0.3),
+    }, mistakes="""
         np.median => np.mean
         np.median => np.mean and also if slope > 0 else np.nan =>
-        np.median => np.mean and also if slope > 0 => if (e_l > e_u).any()
-        np.median(np.tan(e_l) - np.tan(e_u)) => (s := np.tan(e_l) - np.tan(e_u))[s > 0].sum() / max(1, np.sum(s > 0))
         One match on something else spoils a mean; a median does not notice it.
         ... => return np.mean(baseline / (np.tan(e_l) - np.tan(e_u)))
-        ... => return np.mean(baseline / (np.tan(e_l) - np.tan(e_u))) if (e_l > e_u).any() else np.nan
-        ... => s = np.tan(e_l) - np.tan(e_u); return np.mean(baseline / s[s > 0]) if (s > 0).any() else np.nan
         A mean of ranges follows whichever slope is nearest 0. Median, and of the slopes.
         ... => return np.median(baseline * np.cos(e_l) / np.sin(e_l - e_u))
-        ... => return np.median(baseline * np.cos(e_l) / np.sin(e_l - e_u)) if (e_l > e_u).any() else np.nan
-        That is d, along the slanted ray. Asked is the horizontal range: the difference of tangents.
-        np.median(np.tan(e_l) - np.tan(e_u)) => np.tan(e_l[0]) - np.tan(e_u[0])
-        np.median(np.tan(e_l) - np.tan(e_u)) => np.tan(e_l[0]) - np.tan(e_u[0]) and also if slope > 0 else np.nan =>
-        You take the first match alone. It may be the one on something else.
+        You have d, along the slanted ray. The task asks for the horizontal range: the difference of tangents.
         np.tan(e_l) - np.tan(e_u) => e_l - e_u
-        np.tan(e_l) - np.tan(e_u) => e_l - e_u and also if slope > 0 else np.nan =>
-        np.tan(e_l) - np.tan(e_u) => np.tan(e_l - e_u)
-        np.tan(e_l) - np.tan(e_u) => np.tan(e_l - e_u) and also if slope > 0 else np.nan =>
         B / rho is the difference of the two tangents: not of the angles, and not the tangent of their difference.
         np.median(np.tan(e_l) - np.tan(e_u)) => np.tan(np.median(e_l)) - np.tan(np.median(e_u))
-        ... => return baseline / (np.tan(np.median(e_l)) - np.tan(np.median(e_u)))
         Subtract match by match first: the two medians may belong to different features.
         slope > 0 => (e_l > e_u).all()
         Yours is NaN as soon as one match diverges. One may be a stranger: NaN only where all of them do.
         if slope > 0 else np.nan =>
         Right while there is a range. But where the matches diverge yours is negative: NaN belongs there.
-        np.tan(e_l) - np.tan(e_u) => np.tan(e_u) - np.tan(e_l) and also if slope > 0 else np.nan =>
-        baseline / slope => -baseline / slope
-        Your range is negative: the lower camera sees points higher, tan e_l - tan e_u.
-        np.tan(e_l) - np.tan(e_u) => np.abs(np.tan(e_l) - np.tan(e_u))
-        baseline / slope if slope > 0 else np.nan => abs(baseline / slope)
-        An absolute value hides that a negative slope is a wrong match: take slopes as they are, and NaN if all diverge.
         baseline / slope => slope / baseline
-        baseline / slope => 1 / slope
-        baseline / slope => baseline * slope
         The range is B / slope: a slope alone has no metres, and a larger slope means nearer.
     """),
-    Exercise("14.4", mean_error, triangles, "challenge", tolerance=5e-5, cases=[  # a numerical derivative is right, too
-        rays_as_far_above_the_horizon_as_below,
-    ], mistakes="""
+    Exercise("14.4", mean_error, triangles, "challenge", tolerance=5e-5, cases={  # a numerical derivative is right, too
+        "rays as far above the horizon as below": rays_as_far_above_the_horizon_as_below,
+    }, mistakes="""
         bent_range + bent_slope => bent_range / 2 + bent_slope
-        bent_range + bent_slope => 2 * bent_range + bent_slope
-        bent_range + bent_slope => bent_range + bent_slope / 2
-        bent_range + bent_slope => bent_range + 2 * bent_slope
-        One of the two parts is off by a factor of two: a half of Taylor's series, or the 2 of 2 / s^3.
         return sigma**2 => return 2 * sigma**2
-        Twice too large: the second-order term of Taylor's series has a factor of one half.
         return sigma**2 => return sigma**2 / 2
-        Half of it: d2(1/s)/ds2 = 2 / s^3; one of the twos is lost.
-        ... => return mean_error(rho, e_u, e_l, baseline, sigma) / rho
-        That is the share of the range. The task asks for metres.
+        Something is off by a factor of two: the half of Taylor's series, or the 2 of d2(1/s)/ds2 = 2 / s^3.
         ... => return 0 * rho
         Zero is the first order. The second does not cancel: B / slope bends.
         + bent_slope =>
@@ -282,11 +197,7 @@ EXERCISES = [
         The sign of the tangents' part is wrong: the upper elevation stands in the slope with a minus.
         ... => return 2 * sigma**2 * rho**3 / baseline**2
         That holds for level rays. Each elevation counts with 1 / cos of its own.
-        return sigma**2 => return sigma
-        The first order cancels in the mean, so what is left grows with sigma squared.
         ... => return range_sigma(rho, e_u, e_l, baseline, sigma, 0)
-        That is the standard deviation. Asked is the mean of the error, which is much smaller.
-        ... => return rho + mean_error(rho, e_u, e_l, baseline, sigma)
-        That is the mean range; asked is by how much it is too far.
+        That is the standard deviation. The task asks for the mean of the error, which is much smaller.
     """),
 ]

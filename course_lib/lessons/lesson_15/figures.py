@@ -13,20 +13,23 @@ from course_lib.plots.room_figures import map_axes
 
 
 def centroids_figure(scene: MatchingScene) -> Figure:
-    """The observed objects in the body frame and the map, each with its centroid and the distances to it."""
+    """Draw the observed objects in the body frame and the map, each with its centroid and the distances to it."""
     figure, (body, world) = figures.new_figure(1, 2, size=(10.0, 4.4))
-    observed = np.array([[one.x, one.y] for one in scene.observations])
-    for one in dict.fromkeys(observation.label for observation in scene.observations):
-        colour, marker = class_style(one)
-        its = np.array([place for place, o in zip(observed, scene.observations, strict=True) if o.label == one])
-        body.plot(-its[:, 1], its[:, 0], linestyle="none", marker=marker, color=colour, markersize=9)
-    _spokes(body, np.column_stack([-observed[:, 1], observed[:, 0]]), "x_G.camera")
+    observed = np.array([[-one.y, one.x] for one in scene.observations])
+    labels = np.array([one.label for one in scene.observations])
+    for label in dict.fromkeys(labels):
+        colour, marker = class_style(label)
+        body.plot(*observed[labels == label].T, linestyle="none", marker=marker, color=colour, markersize=9)
+    map_axes(world, room_map(), "The map, world frame")
+    for axes, places, name in ((body, observed, "x_G.camera"), (world, room_map().positions, "x_G.map")):
+        for place in places:
+            axes.plot(*np.stack([places.mean(axis=0), place]).T, color="0.6", linewidth=0.9, zorder=1)
+        style = {"color": figures.BLACK, "markersize": 16, "markeredgewidth": 2.2}
+        axes.plot(*places.mean(axis=0), "+", **style, label=name)
     body.plot(0, 0, marker=(3, 0, 0), color=figures.BLACK, markersize=11, linestyle="none", label="camera")
     body.set(title="Observed, body frame (forward is up)", xlabel="to the right, -y [m]", ylabel="forward, x [m]")
     body.set(aspect="equal")
     body.legend(loc="lower left", fontsize=8)
-    map_axes(world, room_map(), "The map, world frame")
-    _spokes(world, room_map().positions, "x_G.map")
     world.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
     return described(
         figure,
@@ -35,17 +38,9 @@ def centroids_figure(scene: MatchingScene) -> Figure:
     )
 
 
-def _spokes(axes, places: np.ndarray, name: str) -> None:
-    centre = places.mean(axis=0)
-    for place in places:
-        axes.plot(*np.stack([centre, place]).T, color="0.6", linewidth=0.9, zorder=1)
-    axes.plot(*centre, "+", color=figures.BLACK, markersize=16, markeredgewidth=2.2, label=name)
-
-
 def terms_figure(scene: MatchingScene, terms: dict[str, np.ndarray]) -> Figure:
-    """Four tables `(n_observations, n_landmarks)`; the right landmark of every observation has a dot."""
+    """Draw four tables `(n_observations, n_landmarks)`. The right landmark of every observation has a dot."""
     figure, axes = figures.new_figure(2, 2, size=(9.6, 8.2))
-    names = [short_name(label, j) for j, label in enumerate(room_map().labels)]
     order = np.argsort(scene.true_landmarks)  # so that the right combinations lie near the diagonal
     shows = [scene.true_landmarks[i] for i in order]
     for k, (a, (title, table)) in enumerate(zip(axes.flat, terms.items(), strict=True)):
@@ -53,7 +48,7 @@ def terms_figure(scene: MatchingScene, terms: dict[str, np.ndarray]) -> Figure:
         a.plot(shows, np.arange(len(table)), ".", color=figures.VERMILION, markersize=5)
         a.grid(False)
         a.set(title=title, xlabel="landmark [-]", ylabel="observation [-]")
-        columns, rows = (names if k >= 2 else [], [names[j] for j in shows] if k % 2 == 0 else [])
+        columns, rows = (short_names() if k >= 2 else [], [short_names()[j] for j in shows] if k % 2 == 0 else [])
         a.set_xticks(range(len(columns)), columns, rotation=90, fontsize=9)
         a.set_yticks(range(len(rows)), rows, fontsize=9)
     figure.colorbar(image, ax=axes, label="penalty [-], 1 and more: yellow", shrink=0.9)
@@ -66,17 +61,14 @@ def terms_figure(scene: MatchingScene, terms: dict[str, np.ndarray]) -> Figure:
 
 
 def sofas_figure(scene: MatchingScene) -> Figure:
-    """Distance to the centroid: the three sofas of the map, and the observed ones."""
+    """Draw the distances to the centroid of the three sofas, of the map and as observed."""
     figure, axes = figures.new_figure(size=(7.4, 2.3))
-    on_map, observed = room_map().positions, np.array([[one.x, one.y] for one in scene.observations])
-    far_map = np.hypot(*(on_map - room_map().centroid).T)
-    far_seen = np.hypot(*(observed - observed.mean(axis=0)).T)
+    on_map, observed = room_map().positions, np.array([one[1:3] for one in scene.observations])
+    far_map, far_seen = (np.hypot(*(places - places.mean(axis=0)).T) for places in (on_map, observed))
     for index, j in enumerate(SOFAS):
         style = figures.line_style(index) | {"linestyle": "none", "markersize": 9}
         axes.plot(far_map[j], 1, **style, label=f"sofa {j}")
-        for i, landmark in enumerate(scene.true_landmarks):
-            if landmark == j:
-                axes.plot(far_seen[i], 0, **style)
+        axes.plot(far_seen[scene.true_landmarks.index(j)], 0, **style)
     axes.set(title="Sofas: how far from the centroid", xlabel="distance to the centroid [m]", ylim=(-0.5, 1.5))
     axes.set_yticks([0, 1], ["observed", "map"])
     axes.set_ylabel("side [-]")
@@ -88,9 +80,7 @@ def sofas_figure(scene: MatchingScene) -> Figure:
     )
 
 
-_SHORT = {"television": "TV", "potted plant": "plant", "refrigerator": "fridge"}
-
-
-def short_name(label: str, number: int) -> str:
-    """Name of a landmark in a figure, such as "sofa 2"."""
-    return f"{_SHORT.get(label, label)} {number}"
+def short_names() -> list[str]:
+    """Return the names of the map's landmarks in a figure, such as "sofa 2"."""
+    short = {"television": "TV", "potted plant": "plant", "refrigerator": "fridge"}
+    return [f"{short.get(label, label)} {j}" for j, label in enumerate(room_map().labels)]

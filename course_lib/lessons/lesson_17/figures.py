@@ -6,7 +6,6 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from course_lib.experiments.room import PairResult
 from course_lib.experiments.room_evaluation import KINDS, PAPER_TABLE_5, UNABLE
 from course_lib.lessons.kit.display import described
 from course_lib.lessons.kit.live_figure import LiveFigure
@@ -73,22 +72,19 @@ CONTROLS = [
     Slider("missed", "objects hidden [-]", 0, 12, 2, 1),  # 11 to 14 are measured in a pose
     Slider("choice", "which ones (seed) [-]", 1, 30, 5, 1),
 ]
-ARROW = 0.45  # metres
 
 
 def judge_panel() -> Panel:
     """Show one pose from exact boxes: hide some of its objects, and see its pairs, its pose and its kind change."""
-    room, results = room_map(), {experiment: exact_results(experiment) for experiment in (1, 2)}
-    localizer = SemanticLocalizer(room_recording(1).rig, room, reject_implausible=False)
+    room, localizer = room_map(), SemanticLocalizer(room_recording(1).rig, room_map(), reject_implausible=False)
     figure, axes = figures.new_figure(size=(7.6, 5.0))
     map_axes(axes, room, "True and estimated pose; lines: what each object was taken for")
     looks = ((figures.BLACK, "true pose"), (ESTIMATE, "estimated pose"))
     style = {"marker": "o", "markersize": 8, "linewidth": 2.2, "markevery": [0]}
     poses = [axes.plot([], [], color=colour, label=name, **style)[0] for colour, name in looks]
     looks = (("-", figures.GREEN, "taken for the right one"), ("--", figures.VERMILION, "taken for a wrong one"))
-    matches = [LineCollection([], linestyles=dash, colors=colour, label=name) for dash, colour, name in looks]
+    matches = [LineCollection([], linestyles=dash, colors=colour, label=name, lw=1.6) for dash, colour, name in looks]
     for lines in matches:
-        lines.set_linewidth(1.6)
         axes.add_collection(lines)
     (measured,) = axes.plot([], [], "x", color="0.35", markersize=7, label="object as measured")
     (rings,) = axes.plot([], [], "o", color="0.35", markersize=13, markerfacecolor="none", label="hidden object")
@@ -97,39 +93,30 @@ def judge_panel() -> Panel:
     live = LiveFigure(figure, [*matches, measured, rings, *poses])
 
     def draw(experiment: str, pose: float, missed: float, choice: float) -> Drawing:
-        result = results[int(experiment)][int(pose) - 1]
-        total = len(result.localization.observations)
-        order = np.random.default_rng(int(choice)).permutation(total)
-        hidden, seen = order[: int(missed)], np.sort(order[int(missed) :])
-        one = thinned(result, seen, localizer)
-        found = one.localization
+        result = exact_results(int(experiment))[int(pose) - 1]
+        total, shown = len(result.true_landmarks), np.array(result.true_landmarks)
+        hidden, seen = np.split(np.random.default_rng(int(choice)).permutation(total), [int(missed)])
+        one = thinned(result, np.sort(seen), localizer)
+        found, (kind, dx, dy, dtheta) = one.localization, one.outcome
         for line, its_pose in zip(poses, (one.pair.pose, found.pose), strict=True):
             x, y, theta = (np.nan, np.nan, np.nan) if its_pose is None else its_pose
-            line.set_data([x, x + ARROW * np.cos(theta)], [y, y + ARROW * np.sin(theta)])
-        pairs = [] if found.pose is None else found.used_pairs
-        places = {i: found.pose.apply(np.array([found.observations[i][1:3]]))[0] for i, _ in pairs}
-        is_right = [one.true_landmarks[i] == j for i, j in pairs]
+            line.set_data([x, x + 0.45 * np.cos(theta)], [y, y + 0.45 * np.sin(theta)])
+        used = [] if found.pose is None else found.used_pairs
+        pairs = [(one.true_landmarks[i] == j, found.pose.apply([found.observations[i][1:3]])[0], j) for i, j in used]
         for lines, wanted in zip(matches, (True, False), strict=True):
-            chosen = [pair for pair, right in zip(pairs, is_right, strict=True) if right == wanted]
-            lines.set_segments([(places[i], room.positions[j]) for i, j in chosen])
-        measured.set_data(*np.reshape(list(places.values()), (-1, 2)).T)
-        rings.set_data(*room.positions[[result.true_landmarks[k] for k in hidden]].T)
-        text = judgement(one, total, is_right.count(False))
-        alt = f"Pose {result.pair.name} of experiment {experiment} on the map, {len(hidden)} objects hidden. {text[0]}"
-        return Drawing(live.png(), alt, f"{result.pair.name}: " + "\n".join(text))
+            lines.set_segments([(place, room.positions[j]) for right, place, j in pairs if right == wanted])
+        measured.set_data(*np.reshape([place for _, place, _ in pairs], (-1, 2)).T)
+        rings.set_data(*room.positions[shown[hidden]].T)
+        text = f"{kind}; {len(seen)} of {total} objects seen"
+        more = "two pairs at least are needed for a pose"
+        if kind != UNABLE:
+            text += f", {sum(not right for right, *_ in pairs)} wrong pairs"
+            mended = "every pair right" if is_matched_rightly(one, "true centroid") else "wrong pairs still"
+            more = f"dx {dx:.1f} m, dy {dy:.1f} m, dtheta {dtheta:.0f} degrees; with a true centroid: {mended}"
+        alt = f"Pose {result.pair.name} of experiment {experiment} on the map, {len(hidden)} objects hidden. {text}"
+        return Drawing(live.png(), alt, f"{result.pair.name}: {text}\n{more}")
 
     return Panel("17 hide some objects", CONTROLS, draw)
-
-
-def judgement(one: PairResult, total: int, n_wrong: int) -> tuple[str, str]:
-    """Return its kind and errors, and whether a true centroid would have mended the matching: two lines."""
-    kind, dx, dy, dtheta = one.outcome
-    seen = f"{kind}; {len(one.true_landmarks)} of {total} objects seen"
-    if kind == UNABLE:
-        return seen, "two pairs at least are needed for a pose"
-    mended = "every pair right" if is_matched_rightly(one, "true centroid") else "wrong pairs still"
-    errors = f"dx {dx:.1f} m, dy {dy:.1f} m, dtheta {dtheta:.0f} degrees"
-    return f"{seen}, {n_wrong} wrong pairs", f"{errors}; with a true centroid: {mended}"
 
 
 PANELS = {"17 hide some objects": judge_panel}

@@ -16,10 +16,7 @@ from course_lib.paths import data_path
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.semantic_map.association import Observation, penalty
 
-SOURCES = {"images": "greedy", "exact_boxes": "greedy_exact_boxes"}
-"""Source of the detections -> its key in a summary."""
 NAMES = {"images": "ours, from images", "exact_boxes": "ours, exact boxes"}
-RATES = [f"{kind}_percent" for kind in room_evaluation.KINDS]
 CURES = ("true places", "true colours", "true centroid")
 """What a failing pose is given in place of its measurement, one at a time."""
 
@@ -44,17 +41,14 @@ class StoredRoom(NamedTuple):
         wanted = (f"experiment_{experiment}", source)
         return {row["place"]: row["outcome"] for row in self.rows if (row["experiment"], row["source"]) == wanted}
 
-    def table(self, experiment: int, source: str) -> dict:
-        """Return the rates, and the errors of "all", "correct" and "incorrect" poses."""
-        return self.summary[f"experiment_{experiment}"][SOURCES[source]]
-
 
 def stored_rooms() -> list[StoredRoom]:
     """Return all seeds of data/room/results."""
-    paths = sorted(data_path("room/results").glob("seed_*.json"))
-    rows = [list(csv.DictReader(path.with_suffix(".csv").read_text("utf-8").splitlines())) for path in paths]
-    summaries = [json.loads(path.read_text("utf-8")) for path in paths]
-    return [StoredRoom(int(path.stem[5:]), *one) for path, *one in zip(paths, summaries, rows, strict=True)]
+    found = []
+    for path in sorted(data_path("room/results").glob("seed_*.json")):
+        rows = list(csv.DictReader(path.with_suffix(".csv").read_text("utf-8").splitlines()))
+        found.append(StoredRoom(int(path.stem[5:]), json.loads(path.read_text("utf-8")), rows))
+    return found
 
 
 def failing_places(runs: list[StoredRoom], experiment: int) -> dict[str, int]:
@@ -64,14 +58,21 @@ def failing_places(runs: list[StoredRoom], experiment: int) -> dict[str, int]:
     return dict(sorted(counts.items(), key=lambda item: (-item[1], item[0])))
 
 
+def tables(runs: list[StoredRoom], experiment: int, source: str) -> list[dict]:
+    """Return the rates, and the errors of "all", "correct" and "incorrect" poses, of every seed."""
+    key = {"images": "greedy", "exact_boxes": "greedy_exact_boxes"}[source]
+    return [run.summary[f"experiment_{experiment}"][key] for run in runs]
+
+
 def rates(runs: list[StoredRoom], experiment: int, source: str) -> np.ndarray:
     """Return correct, incorrect and unable of every seed, percent `(S, 3)`."""
-    return np.array([[run.table(experiment, source)[key] for key in RATES] for run in runs])
+    found = tables(runs, experiment, source)
+    return np.array([[table[f"{kind}_percent"] for kind in room_evaluation.KINDS] for table in found])
 
 
 def errors(runs: list[StoredRoom], experiment: int, source: str, kind: str) -> np.ndarray:
     """Return a row of table 3 or 4 `(6,)`: the median over the seeds that have poses of this kind."""
-    found = [run.table(experiment, source)[kind] for run in runs]
+    found = [table[kind] for table in tables(runs, experiment, source)]
     return np.median([[one[key] for key in room_evaluation.ERRORS] for one in found if one["n"]], axis=0)
 
 
@@ -79,7 +80,7 @@ def table_5(runs: list[StoredRoom]) -> str:
     """Return the paper's table 5 and ours: percent of the poses, the median over the seeds and their range."""
     lines = [("% of the poses", room_evaluation.KINDS)]
     for experiment, paper in room_evaluation.PAPER_TABLE_5.items():
-        lines.append((f"experiment {experiment}, paper", [f"{paper[key]:.0f}" for key in RATES]))
+        lines.append((f"experiment {experiment}, paper", [f"{value:.0f}" for value in paper.values()]))
         for source, name in NAMES.items():
             found = rates(runs, experiment, source).T
             cells = [f"{np.median(values):.0f} ({values.min():.0f}-{values.max():.0f})" for values in found]
@@ -111,11 +112,9 @@ def thinned(result: PairResult, keep: np.ndarray, localizer: SemanticLocalizer) 
 
 def randomly_thinned(results: list[PairResult], localizer: SemanticLocalizer, share_seen: float) -> list[PairResult]:
     """Return every pose four times, each of its objects seen with probability `share_seen`, by itself."""
-    rng, found = np.random.default_rng(1), []
-    for result in [one for one in results for _ in range(4)]:
-        seen = rng.random(len(result.localization.observations)) < share_seen
-        found.append(thinned(result, np.flatnonzero(seen), localizer))
-    return found
+    rng = np.random.default_rng(1)
+    four = ((one, rng.random(len(one.true_landmarks))) for one in results for _ in range(4))
+    return [thinned(one, np.flatnonzero(drawn < share_seen), localizer) for one, drawn in four]
 
 
 def is_matched_rightly(result: PairResult, cure: str | None = None) -> bool:
@@ -124,16 +123,13 @@ def is_matched_rightly(result: PairResult, cure: str | None = None) -> bool:
     Every observation must show a landmark, as exact boxes do. "true places": each object where the map has it. "true
     colours": the map's own. "true centroid": the map's, as if every object had been seen.
     """
-    room, seen, shown = room_map(), result.localization.observations, list(result.true_landmarks)
-    labels, x, y, hues, saturations = (np.array(column) for column in list(zip(*seen, strict=True))[:5])
-    places = np.column_stack([x, y])
-    if cure == "true places":
-        places = in_body_frame(room.positions[shown], result.pair.pose)
+    room, shown, pose = room_map(), list(result.true_landmarks), result.pair.pose
+    seen = zip(*(one[:5] for one in result.localization.observations), strict=True)
+    labels, x, y, hues, saturations = (np.array(column) for column in seen)
+    places = in_body_frame(room.positions[shown], pose) if cure == "true places" else np.column_stack([x, y])
     if cure == "true colours":
         hues, saturations = room.hues[shown], room.saturations[shown]
-    centroid = places.mean(axis=0)
-    if cure == "true centroid":
-        centroid = in_body_frame(room.centroid[None], result.pair.pose)[0]
+    centroid = in_body_frame(room.centroid, pose) if cure == "true centroid" else places.mean(axis=0)
     rows = Observation(*(column[:, None] for column in (labels, *places.T, hues, saturations)))
     columns = Observation(np.array(room.labels), *room.positions.T, room.hues, room.saturations)
     cost, is_right = penalty(rows, columns, centroid, room.centroid).total, True

@@ -27,11 +27,11 @@ SIGMAS = 2.0
 RING = {"marker": "o", "mfc": "none", "mec": figures.BLACK, "markersize": 11}
 
 
-def ellipse(centre: np.ndarray, covariance: np.ndarray, sigmas: float, **style) -> Ellipse:
-    """Return the curve on which (p - centre)^T C^-1 (p - centre) = sigmas^2."""
-    variances, axes = np.linalg.eigh(covariance)
-    width, height = 2 * sigmas * np.sqrt(np.maximum(variances, 0))
-    return Ellipse(centre, width, height, angle=np.degrees(np.arctan2(axes[1, 0], axes[0, 0])), fill=False, **style)
+def draw_ellipse(axes: Axes, centre: np.ndarray, covariance: np.ndarray, sigmas: float, **style) -> None:
+    """Draw the curve on which (p - centre)^T C^-1 (p - centre) = sigmas^2."""
+    variances, ways = np.linalg.eigh(covariance)
+    size, angle = 2 * sigmas * np.sqrt(np.maximum(variances, 0)), np.degrees(np.arctan2(ways[1, 0], ways[0, 0]))
+    axes.add_patch(Ellipse(centre, *size, angle=angle, fill=False, **style))
 
 
 def laid_on_the_map(scene: Scene, pose: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
@@ -52,7 +52,7 @@ def draw_matches(axes: Axes, title: str, scene: MatchingScene, pose: Sequence, p
         axes.plot(*np.stack([places[i], room_map().positions[j]]).T, style, color=colour, linewidth=1.8, zorder=4)
     for i, (place, covariance) in enumerate(zip(places, spread, strict=True)):
         colour = class_style(scene.observations[i].label)[0]
-        axes.add_patch(ellipse(place, covariance, SIGMAS, edgecolor=colour, linewidth=3.2 if i in bold else 1.1))
+        draw_ellipse(axes, place, covariance, SIGMAS, edgecolor=colour, linewidth=3.2 if i in bold else 1.1)
         axes.plot(*place, "x", color=colour, markersize=7, markeredgewidth=1.7, zorder=5)
     draw_true_pose(axes, scene.pose)
     draw_pose(axes, *pose, figures.BLACK)
@@ -71,8 +71,8 @@ def legend_below(figure: Figure, axes: Axes, entries: dict[str, dict], columns: 
     for name, style in entries.items():
         axes.plot([], [], **({"linestyle": "none"} | style), label=name)
     handles, labels = axes.get_legend_handles_labels()
-    columns = min(columns, len(labels))
-    figure.legend(handles, labels, loc="outside lower center", ncols=columns, fontsize=8, frameon=False)
+    place = {"loc": "outside lower center", "ncols": min(columns, len(labels))}
+    figure.legend(handles, labels, **place, fontsize=8, frameon=False)
 
 
 MATCHES = {
@@ -84,33 +84,30 @@ MATCHES = {
 }
 
 
-def side_by_side(scene: MatchingScene, found: dict[str, tuple], alt: str) -> Figure:
-    """Draw two poses of one scene. found: title -> pose, pairs, and perhaps the observations that it was made of."""
-    figure, axes = figures.new_figure(1, len(found), size=(10.0, 5.4))
-    for one, (title, what) in zip(axes, found.items(), strict=True):
+def side_by_side(scene: MatchingScene, titles: Sequence[str], found: Sequence[tuple], alt: str) -> Figure:
+    """Draw two poses of one scene. found: of each the pose, pairs, and perhaps the observations it was made of."""
+    figure, axes = figures.new_figure(1, 2, size=(10.0, 5.4))
+    for one, title, what in zip(axes, titles, found, strict=True):
         draw_matches(one, title, scene, *what)
     legend_below(figure, axes[-1], MATCHES, 4)
     figure.get_layout_engine().set(h_pad=0.1)  # else the titles touch the edge
     return described(figure, alt)
 
 
-def two_ways_figure(scene: MatchingScene, by_colour: tuple, by_two: tuple) -> Figure:
+def two_ways_figure(scene: MatchingScene, *found: tuple) -> Figure:
     """Two plans of the room. Left: matched by colour, each sofa is taken for another one and the pose is beside the
     true one. Right: from the pose of two right matches every other object lies near its own landmark.
     """
-    found = {
-        "By class and colour first, then the pose": by_colour,
-        "Two matches (thick) make a pose: see the others": by_two,
-    }
-    return side_by_side(scene, found, two_ways_figure.__doc__)
+    titles = "By class and colour first, then the pose", "Two matches (thick) make a pose: see the others"
+    return side_by_side(scene, titles, found, two_ways_figure.__doc__)
 
 
-def best_two_figure(scene: MatchingScene, best: PoseHypothesis, second: PoseHypothesis) -> Figure:
+def best_two_figure(scene: MatchingScene, *best_two: PoseHypothesis) -> Figure:
     """Left, the best pose: every object lies within its ellipse near its landmark, ellipses point at the robot. Right,
     the runner-up, a metre and more away: half of the objects have no landmark near them.
     """
-    found = {"The best pose": (best.pose, best.pairs), "The runner-up": (second.pose, second.pairs)}
-    return side_by_side(scene, found, best_two_figure.__doc__)
+    found = [(one.pose, one.pairs) for one in best_two]
+    return side_by_side(scene, ("The best pose", "The runner-up"), found, best_two_figure.__doc__)
 
 
 def hypotheses_figure(poses: np.ndarray, true_pose: Sequence[float]) -> Figure:
@@ -204,7 +201,7 @@ def few_seen_figure(scene: MatchingScene, found: PoseHypothesis) -> Figure:
     """
     figure, axes = figures.new_figure(size=(7.4, 6.4))
     draw_matches(axes, "Four objects, four right matches", scene, found.pose, found.pairs)
-    axes.add_patch(ellipse(found.pose[:2], found.covariance[:2, :2], 3.0, edgecolor=figures.BLACK, lw=2.0))
+    draw_ellipse(axes, found.pose[:2], found.covariance[:2, :2], 3.0, edgecolor=figures.BLACK, lw=2.0)
     of_pose = {"3-sigma ellipse of the pose": {"linestyle": "-", "color": figures.BLACK}}
     legend_below(figure, axes, MATCHES | of_pose, 3)
     return described(figure, few_seen_figure.__doc__)

@@ -67,66 +67,58 @@ def hypotheses_panel() -> Panel:
     plan, (terms, residuals) = figure.add_subplot(grid[:, 0]), axes[:, 1]
     map_axes(plan, room_map(), "The map, and the objects (x) as this pose lays them on it")
     landmarks = {line.get_label(): line for line in plan.get_lines() if line.get_label() in room_map().labels}
-    matches = [
-        LineCollection([], colors=figures.GREEN, linewidths=2.6),
-        LineCollection([], colors=figures.VERMILION, linewidths=2.0, linestyles="--"),
-    ]
-    ellipses, heading = LineCollection([], linewidths=1.1), LineCollection([], colors=figures.BLACK, linewidths=2.4)
-    for one in (*matches, ellipses, heading):
+    right_style, wrong_style = {"color": figures.GREEN}, {"color": figures.VERMILION}
+    matches = [LineCollection([], **right_style, lw=2.6), LineCollection([], **wrong_style, lw=2.0, linestyles="--")]
+    ellipses = LineCollection([], linewidths=1.1)
+    for one in (*matches, ellipses):
         plan.add_collection(one)
     square = {"marker": "s", "mfc": "none", "mec": figures.VERMILION}
     dot = {"marker": "o", "color": figures.BLACK, "markersize": 8}
     (places,) = plan.plot([], [], "x", color="0.2", markersize=7, markeredgewidth=1.6)
     (missed,) = plan.plot([], [], linestyle="none", **square, markersize=17, markeredgewidth=1.4)
     (truth,) = plan.plot([], [], linestyle="none", **(RING | {"markersize": 14}), markeredgewidth=1.6)
-    (robot,) = plan.plot([], [], linestyle="none", **dot)
+    (robot,) = plan.plot([], [], **dot, linewidth=2.4, markevery=[0], solid_capstyle="butt")
     plan.set(xlim=(-1.0, 6.2), ylim=(-1.1, 6.1))
     for name, style in {"this pose": dot, "true pose": RING, "should be seen, and is not": square | {"ms": 11}}.items():
         plan.plot([], [], linestyle="none", label=name, **style)
     plan.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8, frameon=False)
     # Bars, the first name on top, as thick lines, which a live figure moves cheaply.
     names = [*TERMS, "score"]
-    bars = LineCollection([], linewidths=9, capstyle="butt", colors=[figures.BLUE] * len(TERMS) + [figures.BLACK])
-    terms.add_collection(bars)
+    colours = [figures.BLUE] * len(TERMS) + [figures.BLACK]
+    bars = terms.add_collection(LineCollection([], linewidths=9, capstyle="butt", colors=colours))
     terms.axvline(0, color="0.3", linewidth=0.8)
     terms.set(title="What its score adds up from", xlabel="score [nats]", ylabel="evidence [-]")
     terms.set(ylim=(len(names) - 0.4, -0.6), xlim=(MIN_NATS, MAX_NATS), yticks=range(len(names)), yticklabels=names)
-    (right_dots,) = residuals.plot([], [], "o", color=figures.GREEN, markersize=6, label="right")
-    (wrong_dots,) = residuals.plot([], [], "X", color=figures.VERMILION, markersize=8, label="wrong")
+    dots = residuals.plot([], [], "o", **right_style, markersize=6, label="right")
+    dots += residuals.plot([], [], "X", **wrong_style, markersize=8, label="wrong")
     residuals.axhline(SIGMAS, color="0.5", linewidth=0.8, linestyle=":")
     residuals.set(title="How far each match is off", xlabel="match [-]", ylabel="distance [sigmas]")
     residuals.set(xlim=(0.3, 14.7), ylim=(0, MAX_SIGMAS))
     residuals.legend(loc="upper right", fontsize=7, ncols=2)
-    on_map = [ellipses, *matches, *landmarks.values(), places, missed, truth, heading, robot]
-    live = LiveFigure(figure, [*on_map, bars, right_dots, wrong_dots])
+    live = LiveFigure(figure, [ellipses, *matches, *landmarks.values(), places, missed, truth, robot, bars, *dots])
 
     def draw(rank: float, hidden: float, photographs: str, map_name: str) -> Drawing:
         scene, arrays, poses = ranked(photographs, map_name, int(hidden))
         semantic_map, k = arrays.semantic_map, min(int(rank), len(poses)) - 1
-        chosen = poses[k]
+        chosen, (x, y, theta) = poses[k], poses[k].pose
         for label, line in landmarks.items():
             line.set_data(*semantic_map.positions[[one == label for one in semantic_map.labels]].T)
         seen, spread = laid_on_the_map(arrays, chosen.pose)
         places.set_data(*seen.T)
         ellipses.set_segments(list(np.swapaxes(np.linalg.cholesky(spread) @ CIRCLE, 1, 2) + seen[:, None]))
         ellipses.set_color([class_style(one.label)[0] for one in scene.observations])
-        # In the mirror no match is right: there the robot is nowhere.
-        right = np.array([map_name == ROOM and scene.true_landmarks[i] == j for i, j in chosen.pairs])
-        ends = np.array([(seen[i], semantic_map.positions[j]) for i, j in chosen.pairs])
-        for lines, shown in zip(matches, (right, ~right), strict=True):
-            lines.set_segments(list(ends[shown]))
         missed.set_data(*semantic_map.positions[list(chosen.missed)].reshape(-1, 2).T)
         truth.set_data(*([[v] for v in scene.pose[:2]] if map_name == ROOM else ([], [])))
-        x, y, theta = chosen.pose
-        robot.set_data([x], [y])
-        heading.set_segments([[(x, y), (x + 0.5 * np.cos(theta), y + 0.5 * np.sin(theta))]])
+        robot.set_data([x, x + 0.5 * np.cos(theta)], [y, y + 0.5 * np.sin(theta)])
         values, off = score_terms(arrays, chosen)
         lengths = np.clip([*values.values(), chosen.score], MIN_NATS, MAX_NATS)
         bars.set_segments([[(0, row), (length, row)] for row, length in enumerate(lengths)])
-        order = np.argsort(off)
-        off, is_right, numbers = np.minimum(off[order], 0.97 * MAX_SIGMAS), right[order], np.arange(1, len(off) + 1)
-        right_dots.set_data(numbers[is_right], off[is_right])
-        wrong_dots.set_data(numbers[~is_right], off[~is_right])
+        # In the mirror no match is right: there the robot is nowhere.
+        right = np.array([map_name == ROOM and scene.true_landmarks[i] == j for i, j in chosen.pairs])
+        ends = np.array([(seen[i], semantic_map.positions[j]) for i, j in chosen.pairs])
+        for lines, points, shown in zip(matches, dots, (right, ~right), strict=True):
+            lines.set_segments(list(ends[shown]))
+            points.set_data(1 + np.argsort(np.argsort(off))[shown], np.minimum(off[shown], 0.97 * MAX_SIGMAS))
         sum_of_terms = ", ".join(f"{name} {value:.1f}" for name, value in values.items() if value)
         nothing = max(0.0, 1 - sum(one.share for one in poses))
         summary = (

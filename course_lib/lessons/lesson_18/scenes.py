@@ -47,30 +47,25 @@ def drawn_scenes(draws: int, n_seen: int | None = None) -> dict[tuple[str, int],
     return found
 
 
-def moved_map(semantic_map: SemanticMap, positions: np.ndarray, walls: np.ndarray) -> SemanticMap:
-    pairs = zip(semantic_map.landmarks, positions.tolist(), strict=True)
-    return SemanticMap([replace(one, x=x, y=y) for one, (x, y) in pairs], walls)
-
-
 def mirrored(semantic_map: SemanticMap) -> SemanticMap:
     """Return the map in a mirror that stands across x: no distance between two objects changes, and no pose fits."""
-    shift, flip = [semantic_map.walls[:, 0].min() + semantic_map.walls[:, 0].max(), 0], [-1, 1]
-    return moved_map(semantic_map, semantic_map.positions * flip + shift, semantic_map.walls * flip + shift)
+    ends = semantic_map.walls[:, 0].min() + semantic_map.walls[:, 0].max()
+    walls = semantic_map.walls * [-1, 1] + [ends, 0]
+    return SemanticMap([replace(one, x=float(ends - one.x)) for one in semantic_map.landmarks], walls)
 
 
 def surveyed(semantic_map: SemanticMap) -> SemanticMap:
     """Return the map as a tape measure gives it: no room is the same after half a turn exactly."""
-    noise = np.random.default_rng(18).normal(0.0, MAP_SIGMA, (len(semantic_map), 2))
-    return moved_map(semantic_map, semantic_map.positions + noise, semantic_map.walls)
+    off = np.random.default_rng(18).normal(0.0, MAP_SIGMA, (len(semantic_map), 2)).tolist()
+    both = zip(semantic_map.landmarks, off, strict=True)
+    return SemanticMap([replace(one, x=one.x + dx, y=one.y + dy) for one, (dx, dy) in both], semantic_map.walls)
 
 
 def exact_view(semantic_map: SemanticMap, pose: np.ndarray, n_seen: int) -> list[Observation]:
     """Return the first landmarks as a rig at `pose` (x, y, theta) would measure them, without noise."""
-    places = in_body_frame(semantic_map.positions, pose)[:n_seen]
-    return [
-        Observation(one.label, *place.tolist(), one.hue, one.saturation, stereo_covariance(place))
-        for one, place in zip(semantic_map.landmarks, places, strict=False)
-    ]
+    both = zip(semantic_map.landmarks, in_body_frame(semantic_map.positions, pose), strict=True)
+    seen = [Observation(one.label, *at.tolist(), one.hue, one.saturation, stereo_covariance(at)) for one, at in both]
+    return seen[:n_seen]
 
 
 def walk_past_the_plant(start: np.ndarray) -> tuple[np.ndarray, list[list[Observation]], list[Motion | None]]:
@@ -78,9 +73,8 @@ def walk_past_the_plant(start: np.ndarray) -> tuple[np.ndarray, list[list[Observ
 
     0.8 m ahead, then a quarter turn on the spot. The plant is hidden in the first two views.
     """
-    x, y, theta = start
-    ahead = (x + 0.8 * np.cos(theta), y + 0.8 * np.sin(theta))
-    poses = np.array([start, [*ahead, theta], [*ahead, theta + np.pi / 2]])
+    ahead = start + 0.8 * np.array([np.cos(start[2]), np.sin(start[2]), 0.0])
+    poses = np.array([start, ahead, ahead + np.array([0.0, 0.0, np.pi / 2])])
     views = [exact_view(ROOM_WITH_PLANT, pose, n_seen) for pose, n_seen in zip(poses, (5, 5, 6), strict=True)]
     rng = np.random.default_rng(18)
     return poses, views, [None, *(measured_motion(a, b, rng) for a, b in pairwise(poses))]

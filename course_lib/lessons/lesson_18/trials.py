@@ -49,15 +49,14 @@ def fit_errors() -> dict[str, np.ndarray]:
 
     "plain": `fit_rigid_2d`, the paper's, every error counted alike. "weighed": `fit_poses`, by the stereo covariance.
     """
-    found, true = [], np.array([scene.pose for scene in room_scenes().values()])
+    off: dict[str, list] = {"plain": [], "weighed": []}
     for scene in room_scenes().values():
         arrays, targets = scene_of(scene.observations, room_map()), room_map().positions[list(scene.true_landmarks)]
-        plain = np.array(fit_rigid_2d(arrays.places, targets))
-        found.append(
-            [plain, fit_poses(plain[None], arrays.places[None], targets[None], arrays.covariances[None])[0][0]]
-        )
-    off = np.hypot(*(np.array(found) - true[:, None])[..., :2].T)
-    return dict(zip(("plain", "weighed"), off, strict=True))
+        plain = np.array(fit_rigid_2d(arrays.places, targets))[None]
+        weighed = fit_poses(plain, arrays.places[None], targets[None], arrays.covariances[None])[0]
+        for name, (pose,) in zip(off, (plain, weighed), strict=True):
+            off[name].append(np.hypot(*(pose - scene.pose)[:2]))
+    return {name: np.array(distances) for name, distances in off.items()}
 
 
 def answers_of(scenes: dict, association: Callable = associate_consistent, semantic_map=None) -> list[Answer]:
@@ -79,8 +78,8 @@ def answers_of_two_views(draws: int) -> list[Answer]:
     Methods "one view" and "two views, odometry"; odometry with its noise.
     """
     rng, scenes, answers = np.random.default_rng(18), room_scenes(), []
-    places = [name[:-2] for name in scenes if name.endswith("_a")]
-    for place in progress([place for place in places for _ in range(draws)], "places"):
+    places = [name[:-2] for name in scenes if name.endswith("_a") for _ in range(draws)]
+    for place in progress(places, "places"):
         both = [scenes[f"{place}_{turn}"] for turn in "ab"]
         tracker = SemanticTracker(room_map())
         for k, method in enumerate(("one view", "two views, odometry")):

@@ -9,112 +9,112 @@ from matplotlib.patches import Polygon
 
 from course_lib.experiments.finale import mean_score
 from course_lib.experiments.intervals import wilson_percent
-from course_lib.lessons.lesson_19.stages import Journey, state_error
-from course_lib.lessons.lesson_19.world import world
+from course_lib.lessons.kit.display import described
+from course_lib.lessons.lesson_19.stages import Journey, state_error, world
 from course_lib.plots import figures
 from course_lib.plots.panorama_drawing import class_style, draw_box, panorama
 from course_lib.plots.room_figures import draw_pose
 
-DEVIATIONS = 2  # standard deviations of an ellipse
-SAME_PLACE_M = 0.3  # what stands nearer to something than this gets one name with it: the television on its cabinet
+VIEW = np.deg2rad(21.8)  # half of the angle that the depth camera sees
+SCENE = (
+    "A furnished room cut open, its landmarks as posts with names; on the far wall a blue patch with the potted plant, "
+    "on the same wall a tilted purple patch beside the refrigerator, and an orange one below the ceiling."
+)
+TRUE_PLACE = {"marker": "x", "color": figures.BLACK, "markersize": 9, "markeredgewidth": 2}
 
 
 def draw_room(axes: Axes, title: str) -> None:
-    """The true room from above: walls, and every piece's footprint in its class's colour, with its name."""
+    """Draw the true room from above: walls, and every piece's footprint in its class's colour, with its name."""
     here = world()
-    corners = np.vstack([here.room.walls, here.room.walls[:1]])
-    axes.plot(*corners.T, color=figures.BLACK, linewidth=2.0)
-    for corners, item in zip(here.footprints, here.room.objects, strict=True):
-        colour, _ = class_style(item.label)
+    axes.plot(*np.vstack([here.room.walls, here.room.walls[:1]]).T, color=figures.BLACK, linewidth=2.0)
+    labels = [item.label for item in here.room.objects]
+    for corners, label in zip(here.footprints, labels, strict=True):
+        colour, _ = class_style(label)
         axes.add_patch(Polygon(corners, facecolor=colour, alpha=0.35, edgecolor=colour))
-    labels, sizes = [item.label for item in here.room.objects], [np.ptp(corners, axis=0) for corners in here.footprints]
-    for names, k in named_together(labels, np.array([corners.mean(axis=0) for corners in here.footprints])):
-        across, along = sizes[k]
-        upright = along > 2 * across  # a name is wider than a narrow piece, and would cross the wall beside it
-        words = {"rotation": 90 if upright else 0, "fontsize": 6, "linespacing": 0.9, "clip_on": True}
-        axes.text(*here.footprints[k].mean(axis=0), "\n".join(names), ha="center", va="center", **words)
+    centres = np.array([corners.mean(axis=0) for corners in here.footprints])
+    for names, k in named_together(labels, centres):
+        across, along = np.ptp(here.footprints[k], axis=0)
+        turned = 90 if along > 2 * across else 0  # a name is wider than a narrow piece, and would cross the wall
+        words = {"rotation": turned, "fontsize": 6, "linespacing": 0.9, "clip_on": True}
+        axes.text(*centres[k], "\n".join(names), ha="center", va="center", **words)
     axes.set(title=title, xlabel="x [m]", ylabel="y [m]", aspect="equal")
 
 
 def named_together(labels: Sequence[str], places: np.ndarray) -> list[tuple[list[str], int]]:
-    """What stands at one place, by name, so that no name covers another: (names, index of the first of them) of each.
-
-    labels: n of them. places: `(n, 2)`, metres.
-    """
-    groups: list[tuple[list[str], int]] = []
+    """Return (names, index of the first) of things within 0.3 m, so that no name covers another; places `(n, 2)`."""
+    groups: dict[int, list[str]] = {}
     for k, label in enumerate(labels):
-        same = [names for names, first in groups if np.hypot(*(places[first] - places[k])) < SAME_PLACE_M]
-        if same:
-            same[0].append(label)
-        else:
-            groups.append(([label], k))
-    return groups
+        first = next((one for one in groups if np.hypot(*(places[one] - places[k])) < 0.3), k)
+        groups.setdefault(first, []).append(label)
+    return [(names, first) for first, names in groups.items()]
 
 
 def ellipse(covariance: np.ndarray, centre: Sequence[float]) -> np.ndarray:
-    """The outline `(2, n)` of `DEVIATIONS` standard deviations about a centre in the plane; covariance `(2, 2)`."""
+    """Return the outline `(2, n)` of two standard deviations about a centre; covariance `(2, 2)`."""
     values, vectors = np.linalg.eigh(covariance)
     circle = np.linspace(0, 2 * np.pi, 73)
     ring = np.sqrt(np.maximum(values, 0))[:, None] * np.stack([np.cos(circle), np.sin(circle)])
-    return np.asarray(centre)[:, None] + DEVIATIONS * vectors @ ring
+    return np.asarray(centre)[:, None] + 2 * vectors @ ring
 
 
 def sensors_figure(one: Journey) -> Figure:
-    """What both sensors see from one place: the upper panorama with its objects, the depth image, the plan."""
+    """Draw what both sensors see from one place: the upper panorama with its objects, the depth image, the plan."""
     figure = figures.new_figure(size=(8.2, 5.3))[0]
     figure.clear()
-    grid = figure.add_gridspec(2, 2, height_ratios=[1.0, 1.1])
-    above, image, plan = (figure.add_subplot(part) for part in (grid[0, :], grid[1, 0], grid[1, 1]))
+    above, image, plan = figure.subplot_mosaic("aa;ip", height_ratios=[1.0, 1.1]).values()
     small = one.images[0][::2, ::2]
     panorama(above, small, f"Upper panorama: {len(one.found.upper_detections)} objects found")
     above.set_ylim(0.80 * small.shape[0], 0.34 * small.shape[0])  # ceiling and tripod left out: the objects larger
     for detection in one.found.upper_detections:
         draw_box(above, np.array(detection.box) / 2, small.shape[1], detection.label, detection.label)
-    drawn = figures.depth_image(image, one.depths[0], "Depth image, 43 degrees wide", _limits(one.depths[0]))
-    figures.colour_bar(figure, drawn, image)
+    _draw_depth(image, one.depths[0], "Depth image, 43 degrees wide")
     draw_room(plan, "The room from above, and the robot")
     draw_pose(plan, *one.pose, figures.BLACK)
     x, y, heading = one.pose
-    for side in (-1, 1):
-        angle = heading + side * np.deg2rad(21.8)
+    for angle in (heading - VIEW, heading + VIEW):
         plan.plot([x, x + 2.5 * np.cos(angle)], [y, y + 2.5 * np.sin(angle)], color=figures.BLUE, linewidth=1.2)
-    return figure
+    alt = "A panorama with twelve framed objects; a depth image of a wall and a plant; the room from above."
+    return described(figure, alt)
 
 
-def _limits(depth: np.ndarray) -> tuple[float, float]:
-    """Between which the depths of an image are coloured: nearly all of them, to the decimetre."""
+def _draw_depth(axes: Axes, depth: np.ndarray, title: str) -> None:
+    """Draw a depth image and its colour bar, between limits [dm] that hold nearly all depths."""
     low, high = np.nanpercentile(depth, [1, 99])
-    return float(np.floor(10 * low) / 10), float(np.ceil(10 * high) / 10)
+    drawn = figures.depth_image(axes, depth, title, (float(np.floor(10 * low) / 10), float(np.ceil(10 * high) / 10)))
+    figures.colour_bar(axes.figure, drawn, axes)
 
 
 def stages_figure(one: Journey) -> Figure:
-    """The same place three times, each time closer: the room, what the panoramas say, what the depth camera says."""
+    """Draw the same place three times, each closer: the room, what the panoramas say, what the depth camera says."""
     figure, axes = figures.new_figure(1, 3, size=(10.0, 3.6))
     draw_room(axes[0], "Before: anywhere in here")
-    axes[0].plot(*one.pose[:2], "x", color=figures.BLACK, markersize=9, markeredgewidth=2)
-    found, first = one.found.pose, one.best[0]
+    axes[0].plot(*one.pose[:2], **TRUE_PLACE, linestyle="none")
+    found, first = one.found, one.best[0]
     for a, half, title in ((axes[1], 20.0, "After the panoramas"), (axes[2], 5.0, "After the depth image")):
-        place = 100 * (np.array([found.x, found.y]) - one.pose[:2])
-        a.plot(0, 0, "x", color=figures.BLACK, markersize=9, markeredgewidth=2, label="true place")
+        place = 100 * (np.array(found.pose[:2]) - one.pose[:2])
+        a.plot(0, 0, **TRUE_PLACE, linestyle="none", label="true place")
         a.plot(*place, "s", color=figures.ORANGE, label="semantic pose")
-        a.plot(*ellipse(1e4 * one.found.covariance[:2, :2], place), color=figures.ORANGE, linestyle="--")
+        a.plot(*ellipse(1e4 * found.covariance[:2, :2], place), color=figures.ORANGE, linestyle="--")
+        if a is axes[2]:
+            place = 100 * (first.state[:2] - one.states[0, :2])
+            a.plot(*place, "o", color=figures.BLUE, label="depth filter")
+            a.plot(*ellipse(1e4 * first.error_covariance[:2, :2], place), color=figures.BLUE)
         a.set(title=title, xlim=(-half, half), ylim=(-half, half), aspect="equal")
         a.set(xlabel="x from the true place [cm]", ylabel="y from the true place [cm]")
-    place = 100 * (first.state[:2] - one.states[0, :2])
-    axes[2].plot(*place, "o", color=figures.BLUE, label="depth filter")
-    axes[2].plot(*ellipse(1e4 * first.error_covariance[:2, :2], place), color=figures.BLUE)
-    axes[1].legend(fontsize=8, loc="lower left")
-    axes[2].legend(fontsize=8, loc="lower left")
-    return figure
+        a.legend(fontsize=8, loc="lower left")
+    return described(
+        figure, "Three plans, each closer: the room; the semantic pose and its ellipse; the filter on the cross."
+    )
 
 
-def basin_figure(
-    distances: dict[float, Sequence[bool]], headings: dict[float, Sequence[bool]], semantic: Sequence[tuple]
-) -> Figure:
-    """The share of filters that arrive over how far off they started, and how far off the semantic poses were."""
+def basin_figure(wrong: dict[tuple, Sequence[bool]], semantic: Sequence[tuple]) -> Figure:
+    """Draw the share of filters that arrive over how far off they started, and how far off the semantic poses were.
+
+    wrong: (metres, degrees) -> whether each filter arrived. semantic: metres and degrees of each semantic pose.
+    """
     figure, axes = figures.new_figure(1, 2, size=(9.0, 3.4))
-    names = ("start wrong by [m]", "start turned by [degrees]")
-    for k, (a, runs, name) in enumerate(zip(axes, (distances, headings), names, strict=True)):
+    for k, (a, name) in enumerate(zip(axes, ("start wrong by [m]", "start turned by [degrees]"), strict=True)):
+        runs = {amount[k]: arrived for amount, arrived in wrong.items() if amount[k]}
         shares = [np.mean(reached) for reached in runs.values()]
         ends = [wilson_percent(int(np.sum(reached)), len(reached)) for reached in runs.values()]
         away = np.abs(np.array(ends).T / 100 - shares)
@@ -123,48 +123,44 @@ def basin_figure(
         a.plot(errors, np.full(len(errors), 0.08), "|", color=figures.VERMILION, markersize=16, label="semantic poses")
         a.set(title="How far off may the start be?", xlabel=name, ylabel="share that arrives [-]", ylim=(-0.05, 1.05))
     axes[0].legend(fontsize=8, loc="upper right")
-    return figure
+    alt = "All filters arrive from half a metre or 30 degrees, few from farther; semantic poses lie far left."
+    return described(figure, alt)
 
 
 def starts_figure(one: Journey) -> Figure:
-    """Several starts of one depth filter: where each begins and ends, and how well it explains the images."""
+    """Draw several starts of one depth filter: where each begins and ends, and how well it explains the images."""
     figure, (plan, bars) = figures.new_figure(1, 2, size=(9.4, 4.2))
     draw_room(plan, "Where each start begins (open) and ends (full)")
     draw_pose(plan, *one.pose, figures.BLACK, "true place")
-    colours = (figures.BLUE, figures.ORANGE, figures.VERMILION)
-    for k, (start, run) in enumerate(zip(one.starts, one.runs, strict=True)):
-        colour, marker, end = colours[k], ("o", "s", "D")[k], run[-1].state
+    looks = ((figures.BLUE, "o", ""), (figures.ORANGE, "s", "//"), (figures.VERMILION, "D", ".."))
+    for k, (start, run) in enumerate(zip(one.starts, one.runs, strict=True), start=1):
+        (colour, marker, hatch), end, score = looks[k - 1], run[-1].state, mean_score(run)
         plan.plot(start.x, start.y, marker, markerfacecolor="none", color=colour, markersize=9)
         plan.plot([start.x, end[0]], [start.y, end[1]], ":", color=colour)
-        plan.plot(*end[:2], marker, color=colour, markersize=5, label=f"start {k + 1}")
-        bars.bar(k + 1, mean_score(run), color=colour, hatch=("", "//", "..")[k], edgecolor="white")
-        metres = state_error(end, one.states[-1])[0]
-        bars.text(
-            k + 1, mean_score(run) + 0.01, f"{mean_score(run):.3f}\noff by {metres:.2f} m", ha="center", fontsize=8
-        )
+        plan.plot(*end[:2], marker, color=colour, markersize=5, label=f"start {k}")
+        bars.bar(k, score, color=colour, hatch=hatch, edgecolor="white")
+        told = f"{score:.3f}\noff by {state_error(end, one.states[-1])[0]:.2f} m"
+        bars.text(k, score + 0.01, told, ha="center", fontsize=8)
     plan.legend(fontsize=7, loc="upper right", bbox_to_anchor=(0.94, 0.76))
-    bars.set(
-        title="How well it explains the depth images", xlabel="start [-]", ylabel="mean raw score [-]", ylim=(0, 1.15)
-    )
-    bars.set_xticks(range(1, len(one.runs) + 1))
-    return figure
+    bars.set(title="How well it explains the depth images", xlabel="start [-]", ylabel="mean raw score [-]")
+    bars.set(ylim=(0, 1.15), xticks=range(1, len(one.runs) + 1))
+    alt = "Left, three starts in the room and where each ends, one at the robot; right, its bar is highest."
+    return described(figure, alt)
 
 
 def wall_figure(one: Journey) -> Figure:
-    """A bare wall: the depth image, and both answers with what each knows of itself, from the side."""
+    """Draw a bare wall: the depth image, and the filter's answer with what it knows of itself, from the side."""
     figure, (image, side) = figures.new_figure(1, 2, size=(9.0, 3.6))
-    drawn = figures.depth_image(image, one.depths[0], "What the depth camera sees", _limits(one.depths[0]))
-    figures.colour_bar(figure, drawn, image)
-    heading, true = one.pose[2], one.states[-1]
-    along = np.array([-np.sin(heading), np.cos(heading), 0.0])  # to the robot's left
-    last = one.best[-1]
-    axes_of = np.stack([along, [0.0, 0.0, 1.0]])
-    place = 100 * axes_of @ (last.state[:3] - true[:3])
-    side.plot(0, 0, "x", color=figures.BLACK, markersize=9, markeredgewidth=2, label="true place")
+    _draw_depth(image, one.depths[0], "What the depth camera sees")
+    heading, last = one.pose[2], one.best[-1]
+    left_and_up = np.array([[-np.sin(heading), np.cos(heading), 0.0], [0.0, 0.0, 1.0]])
+    place = 100 * left_and_up @ (last.state[:3] - one.states[-1, :3])
+    covariance = left_and_up @ last.error_covariance[:3, :3] @ left_and_up.T
+    side.plot(0, 0, **TRUE_PLACE, linestyle="none", label="true place")
     side.plot(*place, "o", color=figures.BLUE, label="depth filter")
-    covariance = axes_of @ last.error_covariance[:3, :3] @ axes_of.T
     side.plot(*ellipse(1e4 * covariance, place), color=figures.BLUE, label="its own 2 sigma")
     side.set(title="How far off, seen from behind the robot", xlabel="to the left [cm]", ylabel="up [cm]")
     side.set(xlim=(-100, 100), ylim=(-100, 100), aspect="equal")
     side.legend(fontsize=7, loc="lower right")
-    return figure
+    alt = "Left, a depth image in upright stripes; right, the estimate in a tall ellipse: its height is not known."
+    return described(figure, alt)

@@ -1,7 +1,7 @@
 """A reader's recording or the course's, the ways to misread one, and how far each is from the map."""
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,19 +10,13 @@ import numpy as np
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence, write_sequence
 from course_lib.experiments.recordings import Run, run_sequence
 from course_lib.files import temporary_folder
-from course_lib.geometry import rotation_exp
+from course_lib.geometry import pose_matrix
 from course_lib.lessons.kit.corridor_views import corridor_map
 from course_lib.paths import data_path
-from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap, mesh_endings
 
 STAND_IN_FRAMES = 24  # of the corridor run that was carried by hand: as many as the panel steps through (chosen)
-_OPENGL_TO_OPTICAL = np.diag([1.0, -1.0, -1.0, 1.0])
-
-
-class MissingMapError(FileNotFoundError):
-    """A folder with a recording, but without the mesh that it is compared with."""
 
 
 class Recording(NamedTuple):
@@ -34,130 +28,105 @@ class Recording(NamedTuple):
 
 
 def recording(folder: str | Path | None = None) -> Recording:
-    """The reader's recording with `map.*` (any mesh) beside it; None: the course's stand-in, the simulated corridor.
+    """Read the reader's recording with `map.*` (any mesh) beside it. None: the stand-in, the simulated corridor.
 
-    Raises what `read_sequence` and `SceneMap.load` raise, and `MissingMapError` where there is no map.
+    Raises what `read_sequence` and `SceneMap.load` raise, and FileNotFoundError unless there is one map.
     """
     if folder is None:
         sequence = read_sequence(data_path("corridor/hand"))
         return Recording("stand-in: the corridor, carried by hand", sequence, corridor_map())
-    maps = sorted(path for path in Path(folder).glob("map.*") if path.suffix.lower().lstrip(".") in mesh_endings())
-    if Path(folder).is_dir() and len(maps) != 1:
-        raise MissingMapError(
-            f"no map in {folder}: put the mesh there as map.ply (or .obj, .stl, .glb), in metres"
-            if not maps
-            else f"{len(maps)} maps in {folder}, {maps[0].name} and {maps[1].name}: leave one of them there"
-        )
-    sequence = read_sequence(folder)
-    return Recording(Path(folder).name, sequence, SceneMap.load(maps[0]))
+    folder = Path(folder)
+    maps = sorted(path for path in folder.glob("map.*") if path.suffix.lower().lstrip(".") in mesh_endings())
+    if folder.is_dir() and not maps:
+        raise FileNotFoundError(f"no map in {folder}: put the mesh there as map.ply (or .obj, .stl, .glb), in metres")
+    if len(maps) > 1:
+        names = f"{maps[0].name} and {maps[1].name}"
+        raise FileNotFoundError(f"{len(maps)} maps in {folder}, {names}: leave one of them there")
+    return Recording(folder.name, read_sequence(folder), SceneMap.load(maps[0]))
 
 
-class Reading(NamedTuple):
-    """One way to take the numbers of a recording."""
-
-    depth_scale: float = 1.0
-    """Factor on every depth."""
-    pose: Callable[[np.ndarray], np.ndarray] = lambda pose: pose
-    """Camera-to-world matrix `(4, 4)` -> the one that this reading takes."""
-    focal_scale: float = 1.0
-    """Factor on fx and fy."""
-
-
+# Name -> factor on depths, function of the camera-to-world matrix (4, 4), factor on fx and fy. The first reading is
+# right. Each of the others makes one mistake that people really make.
 READINGS = {
-    "as the formats say": Reading(),
-    "depth: 5000 units a metre": Reading(depth_scale=1000 / 5000),
-    "poses: world to camera": Reading(pose=np.linalg.inv),
-    "camera axes: y up, z backward": Reading(pose=lambda pose: pose @ _OPENGL_TO_OPTICAL),
-    "K: focal lengths twice too long": Reading(focal_scale=2.0),
-    "map: turned by 3 degrees": Reading(pose=lambda pose: _turned(pose, np.deg2rad(3.0))),
+    "as the formats say": (1.0, np.array, 1.0),
+    "depth: 5000 units a metre": (1000 / 5000, np.array, 1.0),
+    "poses: world to camera": (1.0, np.linalg.inv, 1.0),
+    "camera axes: y up, z backward": (1.0, lambda pose: pose @ np.diag([1.0, -1.0, -1.0, 1.0]), 1.0),
+    "K: focal lengths twice too long": (1.0, np.array, 2.0),
+    "map: turned by 3 degrees": (1.0, lambda pose: pose @ pose_matrix(np.deg2rad([0, 0, 0, 0, 3.0, 0])), 1.0),
 }
-"""Name -> reading; the first is right, each of the others makes one mistake that people really make."""
-
-
-def _turned(pose: np.ndarray, angle: float) -> np.ndarray:
-    """The camera turned about its own vertical, as if recording and map were not quite in one frame."""
-    turned = pose.copy()
-    turned[:3, :3] = pose[:3, :3] @ rotation_exp(np.array([0.0, angle, 0.0]))
-    return turned
 
 
 class Compared(NamedTuple):
-    """One frame under one reading, beside the map."""
+    """One frame under one reading, beside the map: images `(H, W)` in metres."""
 
-    measured: np.ndarray
-    """`(H, W)` metres, NaN where nothing was measured."""
-    seen: np.ndarray
-    """`(H, W)` metres, the map from the pose; inf where nothing is hit."""
+    measured: np.ndarray  # NaN where nothing was measured
+    seen: np.ndarray  # the map from the pose, inf where nothing is hit
 
     @property
-    def difference(self) -> np.ndarray:
-        """|z - z_map| `(H, W)` metres; NaN where one of the two is missing."""
+    def images(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the measured depth, the depth of the map, and |z - z_map|, which is NaN where one is missing."""
         difference = np.abs(self.measured - self.seen)
-        return np.where(np.isfinite(difference), difference, np.nan)
+        return self.measured, self.seen, np.where(np.isfinite(difference), difference, np.nan)
 
     @property
     def median(self) -> float:
-        """Median of |z - z_map|, metres; NaN where no measured pixel hits the map."""
-        known = self.difference[np.isfinite(self.difference)]
+        """Return the median of |z - z_map| [m], or NaN if no measured pixel hits the map."""
+        known = self.images[2][np.isfinite(self.images[2])]
         return float(np.median(known)) if len(known) else float("nan")
 
     @property
     def hits(self) -> float:
-        """Share of the measured pixels whose ray hits the map, 0 to 1."""
+        """Return the share of the measured pixels whose ray hits the map, 0 to 1."""
         measured = np.isfinite(self.measured)
         return float(np.isfinite(self.seen[measured]).mean()) if measured.any() else 0.0
 
 
 class Checker:
-    """Compares frames of a recording with its map, under any reading; keeps a renderer for each focal length."""
+    """Compares frames of a recording with its map, under any reading. It keeps a renderer for each focal length."""
 
     def __init__(self, given: Recording) -> None:
         self.given = given
         self._renderers: dict[float, DepthRenderer] = {}
 
     def __call__(self, index: int, reading: str = "as the formats say", shift: float = 0.0) -> Compared:
-        """Frame `index`, read as `reading` says; shift: the camera moved to its right, metres."""
-        way, sequence = READINGS[reading], self.given.sequence
-        pose = way.pose(sequence.camera_to_world[index])
-        pose = pose.copy()
+        """Return frame `index`, read as `reading` says. shift: moves the camera to its right, metres."""
+        (depth_scale, pose_of, focal_scale), sequence = READINGS[reading], self.given.sequence
+        pose = pose_of(sequence.camera_to_world[index])
         pose[:3, 3] += shift * pose[:3, 0]
-        seen = self._renderer(way.focal_scale).render_poses(pose[None])[0]
-        return Compared(sequence.depth(index) * np.float32(way.depth_scale), seen)
-
-    def _renderer(self, focal_scale: float) -> DepthRenderer:
         if focal_scale not in self._renderers:
-            camera: DepthCamera = self.given.sequence.camera()
+            camera = sequence.camera()
             camera = dataclasses.replace(camera, fx=camera.fx * focal_scale, fy=camera.fy * focal_scale)
             self._renderers[focal_scale] = DepthRenderer(self.given.scene_map, camera)
-        return self._renderers[focal_scale]
+        seen = self._renderers[focal_scale].render_poses(pose[None])[0]
+        return Compared(sequence.depth(index) * np.float32(depth_scale), seen)
 
 
 def misread_run(given: Recording, reading: str, frames: int, **options: object) -> Run:
-    """The filter on the first frames of a recording whose files say what `reading` makes of them: `run_sequence`.
+    """Run the filter on the first frames of a misread recording. options: of `run_sequence`.
 
     The misread recording is written to a folder of its own and read back, as a reader's would be.
     """
-    way, sequence = READINGS[reading], given.sequence
+    (depth_scale, pose_of, focal_scale), sequence = READINGS[reading], given.sequence
     frames = min(frames, len(sequence))
-    k = sequence.intrinsics * np.array([[way.focal_scale, 1, 1], [1, way.focal_scale, 1], [1, 1, 1]])
-    depths = [sequence.depth(index) * np.float32(way.depth_scale) for index in range(frames)]
-    poses = [way.pose(pose) for pose in sequence.camera_to_world[:frames]]
+    k = sequence.intrinsics * np.array([[focal_scale, 1, 1], [1, focal_scale, 1], [1, 1, 1]])
+    depths = [sequence.depth(index) * np.float32(depth_scale) for index in range(frames)]
+    poses = [pose_of(pose) for pose in sequence.camera_to_world[:frames]]
     with temporary_folder() as folder:
         write_sequence(folder, k, sequence.frames[:frames], depths, poses, up=sequence.up)
         return run_sequence(given.scene_map, read_sequence(folder), **options)
 
 
 def compare_readings(checker: Checker, frames: Sequence[int]) -> dict[str, list[Compared]]:
-    """Name of every reading, the right one first -> what it makes of each of the frames."""
+    """Return for every reading, the right one first, each of the frames compared with the map."""
     return {name: [checker(frame, name) for frame in frames] for name in READINGS}
 
 
 def readings_table(readings: dict[str, list[Compared]]) -> str:
-    """Of `compare_readings`: the median of |z - z_map|, least and greatest of a frame, and the hits."""
+    """Return a table of `compare_readings`: the medians of |z - z_map| over the frames, and the hits."""
     lines = [f"{'read with':34} {'median |z - z_map|, over the frames':37} pixels on the map"]
     for name, compared in readings.items():
-        medians = np.array([one.median for one in compared])
-        told = "no number"
+        medians, told = np.array([one.median for one in compared]), "no number"
         if np.isfinite(medians).any():
             low, middle, high = np.nanmin(medians), np.nanmedian(medians), np.nanmax(medians)
             told = f"{middle:.3f} m ({low:.3f} to {high:.3f})"

@@ -1,17 +1,17 @@
-"""Figures of project P1."""
+"""The figure of project P1."""
 
 from matplotlib.figure import Figure
 
+from course_lib.lessons.kit.display import described
 from course_lib.lessons.project_1.recordings import Recording
-from course_lib.plots import figures
+from course_lib.plots.figures import depth_images
 
 
-def frames_figure(run: Recording, indices: tuple[int, ...] = (0, 13, 26, 39)) -> Figure:
+def frames_figure(run: Recording) -> Figure:
     """Some depth images of a recording."""
-    figure, axes = figures.new_figure(1, len(indices), size=(9.4, 2.3))
-    for a, index in zip(axes, indices, strict=True):
-        drawn = figures.depth_image(a, run.frames[index], f"frame {index}", (0.0, 10.0))
-    for a in axes[1:]:
-        a.set_ylabel("v [pixels]")
-    figures.colour_bar(figure, drawn, axes)
-    return figure
+    shown = [0, 13, 26, 39]
+    figure = depth_images(run.frames[shown], [f"frame {index}" for index in shown], (0.0, 10.0), (9.4, 2.3))
+    for axes in figure.axes[1:4]:
+        axes.set_ylabel("v [pixels]")
+    alt = "Four depth images of a corridor: both side walls, the floor, and the far end without measurement."
+    return described(figure, alt)

@@ -1,53 +1,42 @@
 """Project P2: from the boxes of two images to a pose; scored by how far the rig's poses are off in hidden rooms."""
 
-from typing import NamedTuple
+from collections import namedtuple
 
 import numpy as np
 
 from course_lib.beyond.look_alikes.matchers import matcher
 from course_lib.lessons.kit.projects import AnswerError, Project, Result, Rival, Task
+from course_lib.lessons.kit.values import as_numbers
 from course_lib.lessons.project_2.exercises import angles_of, pair_boxes, rotation
-from course_lib.lessons.project_2.rooms import ProjectRoom, RoomSet, project_rooms
+from course_lib.lessons.project_2.rooms import SEEDS, ProjectRoom, project_rooms
 from course_lib.paths import data_path
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 
-MAX_COST = 2.0
-"""Metres: a pose that is farther off than this costs no more."""
-NO_ANSWER = 1.0
-"""Metres: what no answer costs."""
-CORRECT = 0.5
-"""Metres: an answer that costs no more is called correct."""
+MAX_COST = 2.0  # metres: a pose that is farther off costs no more
+NO_ANSWER = 1.0  # metres: the cost of no answer
+CORRECT = 0.5  # metres: an answer that costs no more is called correct
 MAX_GAP = 0.1  # radians between the azimuths of two boxes of one object, as the library's triangulation asks
 
-
-class Rig(NamedTuple):
-    """Two spherical cameras, one above the other, and their images."""
-
-    baseline: float
-    """Metres, from the lower camera up to the upper one."""
-    width: int
-    """Of each image, pixels."""
-    height: int
+# Two spherical cameras, one `baseline` [m] above the other, and the size of their images, pixels.
+Rig = namedtuple("Rig", "baseline width height")
 
 
-def rooms_of(name: RoomSet) -> tuple[ProjectRoom, ...]:
-    """The practice rooms, or the hidden ones."""
+def rooms_of(name: str) -> tuple[ProjectRoom, ...]:
+    """Return the "practice" rooms, or the "hidden" ones."""
     return project_rooms(data_path(f"projects/rooms_{name}.json"))
 
 
 def room_of(seed: int) -> ProjectRoom:
-    """A room by its seed. Raises `ValueError`, which names the practice rooms, where there is none."""
-    for room in (*rooms_of("practice"), *rooms_of("hidden")):
-        if room.seed == seed:
-            return room
-    known = ", ".join(str(room.seed) for room in rooms_of("practice"))
-    raise ValueError(f"there is no room of seed {seed}; the practice rooms are {known}")
+    """Return a room by its seed. Raises `ValueError`, which names the practice rooms, if there is none."""
+    rooms = {room.seed: room for name in SEEDS for room in rooms_of(name)}
+    if seed not in rooms:
+        raise ValueError(f"there is no room of seed {seed}; the practice rooms are {str(SEEDS['practice'])[1:-1]}")
+    return rooms[seed]
 
 
 def prepare(seed: int) -> Task:
-    """Every view of a room: the arguments of `locate`; the truth: the poses `(n, 3)`."""
+    """Return the arguments of `locate` for every view of a room. The truth: the poses `(n, 3)`."""
     room = room_of(seed)
     calls = tuple(
         (list(view.upper), list(view.lower), room.semantic_map, Rig(view.rig.baseline, *view.size))
@@ -57,55 +46,40 @@ def prepare(seed: int) -> Task:
 
 
 def pose_cost(answer: object, true_pose: np.ndarray) -> float:
-    """How far a pose is off, metres: the mean of what the rig and a point one metre ahead of it are off.
+    """Return the mean error [m] of the rig's place and of the place of a point one metre ahead of it.
 
-    At most `MAX_COST`; `NO_ANSWER` for None. Raises `AnswerError` for what is neither None nor three numbers.
+    It is `MAX_COST` at most, and `NO_ANSWER` for None. Raises `AnswerError` if the answer is no pose.
     """
     if answer is None:
         return NO_ANSWER
-    try:
-        pose = np.asarray(answer, dtype=np.float64)
-    except (TypeError, ValueError):
-        pose = np.empty(0)
-    if pose.shape != (3,) or not np.isfinite(pose).all():
+    pose = as_numbers(answer)
+    if pose is None or pose.shape != (3,) or not np.isfinite(pose).all():
         raise AnswerError("returns for one view neither None nor three finite numbers (x, y, theta)")
-    off = [
-        np.hypot(*(pose[:2] + rotation(pose[2]) @ point - true_pose[:2] - rotation(true_pose[2]) @ point))
-        for point in np.array([[0.0, 0.0], [1.0, 0.0]])
-    ]
-    return min(float(np.mean(off)), MAX_COST)
+    off = pose[:2] - true_pose[:2]
+    ahead = off + rotation(pose[2])[:, 0] - rotation(true_pose[2])[:, 0]
+    return min(float(np.hypot(*off) + np.hypot(*ahead)) / 2, MAX_COST)
 
 
 def measure(task: Task, answers: list) -> Result:
-    """The mean cost of a room's views."""
+    """Return the mean cost of a room's views."""
     costs = np.array([pose_cost(answer, pose) for answer, pose in zip(answers, task.truth, strict=True)])
     given = np.array([answer is not None for answer in answers])
-    right, wrong = int((given & (costs <= CORRECT)).sum()), int((given & (costs > CORRECT)).sum())
-    return Result(float(costs.mean()), f"{right} correct, {wrong} wrong, {int((~given).sum())} unable")
-
-
-def pairs_of_boxes(upper: list, lower: list, rig: Rig) -> list[tuple[int, int]]:
-    """(upper, lower) indices of the boxes that show one object: class and azimuth, no photograph."""
-    labels = [np.array([one.label for one in side], dtype=str) for side in (upper, lower)]
-    angles = [
-        np.array([angles_of(np.array(one.box), rig.width) for one in side]).reshape(-1, 2) for side in (upper, lower)
-    ]
-    partner = pair_boxes(labels[0], angles[0], labels[1], angles[1], MAX_GAP)
-    return [(i, int(j)) for i, j in enumerate(partner) if j >= 0]
+    right, wrong = (np.count_nonzero(given & kind) for kind in (costs <= CORRECT, costs > CORRECT))
+    return Result(float(costs.mean()), f"{right} correct, {wrong} wrong, {np.count_nonzero(~given)} unable")
 
 
 def by_the_library(association: str):
-    """`locate` by the library's localizer with one of its matchers."""
+    """Return `locate` by the library's localizer with one of its matchers. Stage 2 pairs the boxes."""
 
-    def locate(upper, lower, semantic_map, rig) -> Pose2D | None:
-        localizer = SemanticLocalizer(
-            StereoRig(rig.baseline),
-            semantic_map,
-            association=matcher(association),
-            image_size=(rig.width, rig.height),
-            reject_implausible=False,
-        )
-        return localizer.localize_detections(upper, lower, pairs_of_boxes(upper, lower, rig)).pose
+    def locate(upper, lower, semantic_map, rig):
+        given = []
+        for side in (upper, lower):
+            angles = np.array([angles_of(one.box, rig.width) for one in side]).reshape(-1, 2)
+            given += [np.array([one.label for one in side], dtype=str), angles]
+        pairs = [(i, int(j)) for i, j in enumerate(pair_boxes(*given, MAX_GAP)) if j >= 0]
+        options = {"association": matcher(association), "image_size": rig[1:], "reject_implausible": False}
+        localizer = SemanticLocalizer(StereoRig(rig.baseline), semantic_map, **options)
+        return localizer.localize_detections(upper, lower, pairs).pose
 
     return locate
 
@@ -117,7 +91,7 @@ PROJECT = Project(
     better="lower",
     digits=3,
     function="locate",
-    seeds=tuple(range(6101, 6113)),
+    seeds=SEEDS["hidden"],
     prepare=prepare,
     measure=measure,
     rivals=(

@@ -1,8 +1,5 @@
 """Project P3: a matcher that survives the look-alike sofas."""
 
 from course_lib.lessons.project_2.project import rooms_of
-from course_lib.lessons.project_3.alternative_texts import ALT
 from course_lib.lessons.project_3.figures import view_figure
 from course_lib.lessons.project_3.project import prepare
-
-__all__ = ["ALT", "prepare", "rooms_of", "view_figure"]

@@ -1,7 +1,3 @@
 """Project P4, an unknown camera from raw frames to a report: its sessions, its stages, and what it is measured by."""
 
-from course_lib.lessons.project_4.alternative_texts import ALT
-from course_lib.lessons.project_4.figures import room_figure
-from course_lib.lessons.project_4.sessions import REPEAT, session
-
-__all__ = ["ALT", "REPEAT", "room_figure", "session"]
+from course_lib.lessons.project_4.sessions import REPEAT, room_figure, session

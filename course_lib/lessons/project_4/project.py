@@ -10,14 +10,14 @@ WORST, REFUSED = 0.200, 0.050  # m: what a pixel costs at most, and one that is 
 
 
 def prepare(seed: int) -> Task:
-    """The session's arrays; the truth is the room's, with what the camera measured at all."""
+    """Return the session's arrays. The truth is the room's depth, and where the camera measured at all."""
     given, secrets = session(seed)
     measured = (given.frames != secrets.invalid).any(axis=1)
     return Task(tuple(array.copy() for array in given), (secrets.depth, measured))
 
 
 def measure(task: Task, answer: object) -> Result:
-    """Mean over the pixels that were measured of the depth's error, at most 200 mm, 50 mm where it is refused."""
+    """Return the depth's mean error over the pixels that were measured: at most 200 mm, 50 mm where it is refused."""
     true, measured = task.truth
     try:
         found = np.asarray(answer, dtype=np.float64)
@@ -27,15 +27,13 @@ def measure(task: Task, answer: object) -> Result:
         raise AnswerError(f"returns shape {found.shape}; return one depth a pixel for each place, {true.shape}")
     if np.isinf(found).any():
         raise AnswerError("returns infinity; refuse a pixel with NaN")
-    refused = np.isnan(found)
-    with np.errstate(invalid="ignore"):
-        cost = np.where(refused, REFUSED, np.minimum(np.abs(found - true), WORST))
-    scored = (true < MAX_RANGE) & (measured | ~refused)  # a depth where nothing was measured is invented
-    cost = np.where(measured, cost, WORST)[scored]
-    share = (refused & measured & (true < MAX_RANGE)).sum() / (measured & (true < MAX_RANGE)).sum()
-    errors = np.abs(found - true)[scored & ~refused & measured]
+    near, refused, errors = true < MAX_RANGE, np.isnan(found), np.abs(found - true)
+    cost = np.where(refused, REFUSED, np.fmin(errors, WORST))
+    # A depth where nothing was measured is invented.
+    cost = np.where(measured, cost, WORST)[near & (measured | ~refused)]
+    errors = errors[near & measured & ~refused]
     median = f"median error {1000 * np.median(errors):.1f} mm" if len(errors) else "no depth at all"
-    return Result(1000 * float(cost.mean()), f"{median}; {100 * share:.1f} % refused")
+    return Result(1000 * float(cost.mean()), f"{median}; {100 * refused[near & measured].mean():.1f} % refused")
 
 
 PROJECT = Project(

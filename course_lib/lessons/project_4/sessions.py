@@ -8,10 +8,13 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from course_lib.depth_mcl import DepthCamera
+from course_lib.geometry import BODY_FROM_OPTICAL, pose_matrix
 from course_lib.lessons.kit.box_world import Box, BoxWorld
-from course_lib.simulation.sensors.ray_casting import Hits
+from course_lib.lessons.kit.display import described
+from course_lib.plots import figures
 from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
 
 WIDTH, HEIGHT = 64, 52
@@ -27,50 +30,26 @@ CODES = (0, 1, 32_001, 65_000, 65_535)
 class Session(NamedTuple):
     """All that a user of the camera has."""
 
-    walls: np.ndarray
-    """`(K, M, H, W)` uint16, M raw frames of a wall met squarely, at each of K distances"""
-    distances: np.ndarray
-    """`(K,)` metres from the camera to the wall, along the optical axis, by tape"""
-    intrinsics: np.ndarray
-    """`(3, 3)` the matrix K of the data sheet: its focal length is another camera's"""
-    frames: np.ndarray
-    """`(V, M, H, W)` uint16, M raw frames from each of V places in a room, the camera at rest"""
+    walls: np.ndarray  # (K, M, H, W) uint16, M raw frames of a wall met squarely, at each of K distances
+    distances: np.ndarray  # (K,) metres from the camera to the wall, along the optical axis, by tape
+    intrinsics: np.ndarray  # (3, 3), the matrix K of the data sheet: its focal length is another camera's
+    frames: np.ndarray  # (V, M, H, W) uint16, M raw frames from each of V places in a room, the camera at rest
 
 
 class Secrets(NamedTuple):
     """What the user does not know."""
 
-    units: float
-    """raw numbers a metre of range"""
-    invalid: int
-    """the raw number of a pixel without measurement"""
-    focal: float
-    """pixels"""
+    units: float  # raw numbers a metre of range
+    invalid: int  # the raw number of a pixel without measurement
+    focal: float  # pixels
     model: TimeOfFlightModel
-    pattern: np.ndarray
-    """`(H, W)` metres of range, each pixel's own error"""
-    depth: np.ndarray
-    """`(V, H, W)` metres, the true depths of the room, inf = nothing there"""
-
-
-class _Remembered:
-    """A world that keeps what it answered last: the camera stands still, its rays are the same frame for frame."""
-
-    def __init__(self, boxes: list[Box]) -> None:
-        self._world = BoxWorld(boxes)
-        self.reflectivity = self._world.reflectivity
-        self._last: tuple[tuple, Hits] | None = None
-
-    def cast(self, origins: np.ndarray, directions: np.ndarray) -> Hits:
-        key = (tuple(np.ravel(origins)), directions.shape, float(directions.ravel()[0]))
-        if self._last is None or self._last[0] != key:
-            self._last = key, self._world.cast(origins, directions)
-        return self._last[1]
+    pattern: np.ndarray  # (H, W) metres of range, each pixel's own error
+    depth: np.ndarray  # (V, H, W) metres, the true depths of the room, inf = nothing there
 
 
 @cache
 def session(seed: int) -> tuple[Session, Secrets]:
-    """The session of a seed's camera, and its secrets."""
+    """Return the session of a seed's camera, and its secrets."""
     secrets_rng, room_rng, noise_rng, pattern_rng = np.random.default_rng([seed, 4]).spawn(4)
     focal = float(secrets_rng.uniform(72, 88))
     told = focal * (1 + secrets_rng.choice((-1, 1)) * secrets_rng.uniform(0.05, 0.12))
@@ -87,19 +66,21 @@ def session(seed: int) -> tuple[Session, Secrets]:
     camera = _pinhole(focal)
     instrument = TimeOfFlightCamera(camera, model, pattern_rng)
 
-    def raw(world: _Remembered, state: np.ndarray, count: int) -> np.ndarray:
+    def raw(world: BoxWorld, state: np.ndarray, count: int) -> np.ndarray:
         ranges = np.stack([instrument.capture(world, state, noise_rng).range for _ in range(count)])
         lost = np.isnan(ranges) | dead | (noise_rng.random(ranges.shape) < 0.005)
         numbers = np.clip(np.round(np.where(lost, 0.0, ranges) * units), 0, 65_535)
         return np.where(lost, invalid, numbers).astype(np.uint16)
 
-    walls = np.stack([raw(_Remembered([_wall(d)]), np.zeros(6), WALL_FRAMES) for d in WALLS])
-    room = _Remembered(_room(room_rng))
+    a_wall = [BoxWorld([Box((d, -20.0, -20.0), (d + 0.1, 20.0, 20.0), 0.8)]) for d in WALLS]
+    walls = np.stack([raw(world, np.zeros(6), WALL_FRAMES) for world in a_wall])
+    room = _room(room_rng)
     frames, depth = [], []
     for _ in range(VIEWS):
         state = np.array([0.3, room_rng.uniform(-0.5, 0.5), 1.2, 0.0, 0.0, np.deg2rad(room_rng.uniform(-25, 25))])
         frames.append(raw(room, state, ROOM_FRAMES))
-        depth.append(_true_depth(room, camera, state))
+        rays = camera.rays() @ (pose_matrix(state)[:3, :3] @ BODY_FROM_OPTICAL).T  # their forward component is one
+        depth.append(room.cast(state[:3], rays).distance.astype(np.float64))
     distances = WALLS + TAPE_SIGMA * secrets_rng.standard_normal(len(WALLS))
     given = Session(walls, distances, _pinhole(told).matrix, np.stack(frames))
     return given, Secrets(units, invalid, focal, model, instrument.pattern, np.stack(depth))
@@ -109,12 +90,8 @@ def _pinhole(focal: float) -> DepthCamera:
     return DepthCamera(WIDTH, HEIGHT, focal, focal, (WIDTH - 1) / 2, (HEIGHT - 1) / 2, near=0.1, far=20.0)
 
 
-def _wall(distance: float) -> Box:
-    return Box((distance, -20.0, -20.0), (distance + 0.1, 20.0, 20.0), 0.8)
-
-
-def _room(rng: np.random.Generator) -> list[Box]:
-    """A room with things of all kinds in it, a pole among them, and a dark one."""
+def _room(rng: np.random.Generator) -> BoxWorld:
+    """Draw a room with things of all kinds in it, two poles among them, and dark ones."""
     length, half = rng.uniform(6.0, 8.5), rng.uniform(1.6, 2.6)
     boxes = [
         Box((-1.0, -half, -0.2), (length, half, 0.0), 0.4),
@@ -125,20 +102,20 @@ def _room(rng: np.random.Generator) -> list[Box]:
     ]
     for index in range(9):
         x, y = rng.uniform(1.6, length - 0.8), rng.uniform(-half, half - 0.3)
-        wide, high = rng.uniform(0.2, 0.8), rng.uniform(0.4, 2.2)
-        if index < 2:  # a pole
-            wide, high = 0.07, 2.6
+        size = rng.uniform(0.2, 0.8), rng.uniform(0.4, 2.2)
+        wide, high = (0.07, 2.6) if index < 2 else size  # the first two are poles
         boxes.append(Box((x, y, 0.0), (x + wide, y + wide, high), float(rng.choice((0.15, 0.5, 0.8)))))
-    return boxes
+    return BoxWorld(boxes)
 
 
-def _true_depth(world: _Remembered, camera: DepthCamera, state: np.ndarray) -> np.ndarray:
-    """Depth `(H, W)` on the rays through the pixels' centres, whose forward component is one."""
-    optical = camera.rays()
-    body = np.stack([optical[..., 2], -optical[..., 0], -optical[..., 1]], axis=-1)
-    cosine, sine = np.cos(state[5]), np.sin(state[5])
-    turned = np.stack(
-        [cosine * body[..., 0] - sine * body[..., 1], sine * body[..., 0] + cosine * body[..., 1], body[..., 2]],
-        axis=-1,
-    )
-    return world.cast(state[:3], turned).distance.astype(np.float64)
+def room_figure(given: Session, secrets: Secrets) -> Figure:
+    """Draw one raw frame from each place, in the unit that only the secrets tell, so that all seeds look alike."""
+    first = [np.where(place[0] == secrets.invalid, np.nan, place[0] / secrets.units) for place in given.frames]
+    figure, axes = figures.new_figure(1, len(first), size=(9.4, 2.3))
+    for number, (a, shown) in enumerate(zip(axes, first, strict=True)):
+        drawn = figures.depth_image(a, shown, f"place {number}", (0.0, 9.0))
+    for a in axes[1:]:
+        a.set_ylabel("v [pixels]")
+    figures.colour_bar(figure, drawn, axes, "range as read [m]")
+    alt = "Four range images of a room with boxes and poles, some pixels missing, blurred seams at the edges of things."
+    return described(figure, alt)

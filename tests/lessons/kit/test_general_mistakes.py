@@ -29,23 +29,41 @@ def first_below(values, limit):
     return -1
 
 
+def column_means(a, b):
+    """Twice the greatest row of a, less the mean row of b."""
+    return 2 * a.max(axis=0) - b.mean(axis=0)
+
+
+def deviation(values):
+    """The deviation, at least 0.5, in radians."""
+    return np.deg2rad(np.clip(np.std(values), 0.5, None))
+
+
 def a_rotation(rng):
     theta = rng.uniform(-3, 3)
     return np.array([[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]])
 
 
+def given_numbers(rng):
+    return (rng.normal(size=int(rng.integers(4, 9))),)
+
+
 TURNED = Exercise("99.1", turned, lambda rng: (a_rotation(rng), rng.normal(size=(5, 2)), rng.uniform(-3, 3)))
-SPREAD = Exercise("99.2", spread, lambda rng: (rng.normal(size=int(rng.integers(4, 9))),))
+SPREAD = Exercise("99.2", spread, given_numbers)
 FIRST = Exercise("99.3", first_below, lambda rng: (rng.integers(0, 4, 8).astype(float), 1.0))
 TAN = Exercise("99.4", np.tan, lambda rng: (rng.uniform(-1, 1, 3),))
-
-
-def square_of(R, points, theta):
-    return R @ (points - points.mean(axis=0)).T
+SQUARE = Exercise("99.5", column_means, lambda rng: (rng.normal(size=(3, 3)), rng.normal(size=(3, 3))))
+DEVIATION = Exercise("99.6", deviation, given_numbers)
+OWN = Exercise("99.7", spread, given_numbers, mistakes="np.abs(values) => values\nCubes keep their signs.")
 
 
 def with_heading(heading):
     return lambda R, points, theta: (turned(R, points, theta)[0], heading(R, points, theta))
+
+
+def cubed(values):
+    with np.errstate(invalid="ignore"):
+        return np.sqrt(np.sum(values**3)) / len(values)
 
 
 @pytest.mark.parametrize(
@@ -56,18 +74,32 @@ def with_heading(heading):
         (TURNED, with_heading(lambda *g: np.rad2deg(turned(*g)[1])), general.DEGREES),
         (TURNED, with_heading(lambda R, p, theta: np.arctan2(R[1, 0], R[0, 0]) + theta), general.WRAP),
         (TURNED, with_heading(lambda R, p, theta: wrap_angle(np.arctan2(R[0, 0], R[1, 0]) + theta)), general.ARCTAN2),
+        (
+            TURNED,
+            with_heading(lambda R, p, theta: wrap_angle(np.arctan(R[1, 0] / R[0, 0]) + theta)),
+            general.HALF_CIRCLE,
+        ),
         (TURNED, lambda R, p, theta: ((p - np.median(p, axis=0)) @ R.T, turned(R, p, theta)[1]), general.MIDDLE),
         (SPREAD, lambda values: spread(values) ** 2, general.SQUARED),
         (SPREAD, lambda values: spread(values) * len(values) / (len(values) - 1), general.DIVISOR),
-        (SPREAD, lambda values: np.sqrt(np.sum(values**3)) / len(values), general.ABSOLUTE),
+        (SPREAD, cubed, general.ABSOLUTE),
         (SPREAD, lambda values: 1.003 * spread(values), general.NEARLY),
         (SPREAD, lambda values: round(spread(values), 3), general.NEARLY),
+        (SPREAD, lambda values: 1.03 * spread(values), general.CLOSE),
         (SPREAD, lambda values: 1.4826 * spread(values), general.FACTOR),
         (SPREAD, lambda values: 1.5 + spread(values), general.OFFSET),
+        (SPREAD, lambda values: spread(values) * len(values) ** 2, general.QUOTIENT),
         (FIRST, lambda values, limit: first_below(values, limit) + 1, general.OFF_BY_ONE),
         (FIRST, lambda values, limit: first_below(values[:-1], limit), general.OFF_BY_ONE),
         (FIRST, lambda values, limit: next((k for k, v in enumerate(values) if v <= limit), -1), general.EQUAL),
         (TAN, lambda x: -np.tan(x), general.SIGN),
+        (SQUARE, lambda a, b: 2 * a.max(axis=0) - b.mean(axis=1), general.TRANSPOSED),
+        (SQUARE, lambda a, b: 2 * a.max(axis=1) - b.mean(axis=1), general.AXIS),
+        (SQUARE, lambda a, b: 2 * b.max(axis=0) - a.mean(axis=0), general.EXCHANGED),
+        (SQUARE, lambda a, b: 2 * a.min(axis=0) - b.mean(axis=0), general.EXTREME),
+        (DEVIATION, lambda values: np.deg2rad(max(np.std(values, ddof=1), 0.5)), general.DIVISOR),
+        (DEVIATION, lambda values: np.deg2rad(np.std(values)), general.LIMITS),
+        (OWN, cubed, "Cubes keep their signs."),
     ],
 )
 def test_a_slip_gets_its_sentence(exercise, answer, sentence):
@@ -75,38 +107,9 @@ def test_a_slip_gets_its_sentence(exercise, answer, sentence):
         assert judge(exercise, answer, seed).message == f"not yet. {sentence}"
 
 
-def test_rows_for_columns_and_exchanged_arguments():
-    square = Exercise("99.5", column_means, lambda rng: (rng.normal(size=(3, 3)), rng.normal(size=(3, 3))))
-    assert general.TRANSPOSED in judge(square, lambda a, b: 2 * a.max(axis=0) - b.mean(axis=1)).message
-    assert general.TRANSPOSED in judge(square, lambda a, b: 2 * a.max(axis=1) - b.mean(axis=0)).message
-    assert general.EXCHANGED in judge(square, lambda a, b: 2 * b.max(axis=0) - a.mean(axis=0)).message
-
-
-def column_means(a, b):
-    """Twice the greatest row of a, less the mean row of b."""
-    return 2 * a.max(axis=0) - b.mean(axis=0)
-
-
-def test_an_exercises_own_hint_comes_first():
-    own = Exercise("99.6", spread, SPREAD.inputs, mistakes="np.abs(values) => values\nCubes keep their signs.")
-    assert "Cubes keep their signs." in judge(own, lambda values: np.sqrt(np.sum(values**3)) / len(values)).message
-
-
-def test_what_is_wrong_in_no_known_way_gets_no_such_sentence():
-    for exercise, answer in ((SPREAD, lambda values: np.max(values)), (FIRST, lambda values, limit: len(values))):
-        sentence = judge(exercise, answer).message
-        assert not [text for text in vars(general).values() if isinstance(text, str) and text in sentence[9:]]
-
-
-def test_a_special_case_is_named():
-    def empty_list(rng):
-        return (np.zeros(0),)
-
-    total = Exercise("99.7", sum_of, SPREAD.inputs, cases=[empty_list])
-    verdict = judge(total, lambda values: float(np.sum(values)) if len(values) else 1.0)
-    assert "special case: empty list" in verdict.message
-
-
-def sum_of(values):
-    """The sum."""
-    return float(np.sum(values))
+@pytest.mark.parametrize(
+    ("exercise", "answer"), [(SPREAD, np.max), (FIRST, lambda values, limit: len(values)), (SQUARE, np.add)]
+)
+def test_what_is_wrong_in_no_known_way_gets_no_such_sentence(exercise, answer):
+    sentence = judge(exercise, answer).message
+    assert not [text for text in vars(general).values() if isinstance(text, str) and text in sentence[9:]]

@@ -5,20 +5,21 @@ import re
 
 import numpy as np
 import pytest
+import pyvista
 from PIL import Image
 
 from course_lib.lessons import show_scene
 from course_lib.lessons.kit import scene
-from course_lib.lessons.kit.compression import png_bytes
-from course_lib.lessons.kit.display import FigureError, Picture
+from course_lib.lessons.kit.display import FigureError
 from course_lib.lessons.kit.scene import MAX_PICTURE_BYTES, Scene, small_picture
 from course_lib.paths import STORE_SCENES
-from course_lib.plots import figures, scenes
+from course_lib.plots import scenes
 from course_lib.plots.scene_page import ScenePageError
 from course_lib.plots.scenes import SceneError
 
 WORDS = {"title": 'Axes & "more"', "alt": "The axes of a pose seen from above"}
 STORED, YOURS = "scenes/99_axes.html", "scenes/yours/99_axes.html"
+PICTURE = r'<img alt="The axes of a pose seen from above" src="data:image/png;base64,[^"]+"[^>]*>'
 
 
 def axes_plotter(x: float = 1.0):
@@ -31,106 +32,67 @@ def axes_plotter(x: float = 1.0):
 def shown(monkeypatch, tmp_path):
     """What `show_scene` displays in a notebook's folder, tmp_path."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv(STORE_SCENES, raising=False)
     outputs = []
     monkeypatch.setattr(scene, "display", outputs.append)
 
-    def show(x: float = 1.0, store: bool = False, **words) -> dict:
-        if store:
-            monkeypatch.setenv(STORE_SCENES, "1")
-        show_scene(axes_plotter(x), "99_axes", **(WORDS | words))
-        monkeypatch.delenv(STORE_SCENES, raising=False)
-        return outputs.pop()._repr_mimebundle_()
+    def show(x: float = 1.0, store: bool = False, **words) -> str:
+        monkeypatch.setenv(STORE_SCENES, "1" if store else "")
+        plotter = axes_plotter(x)
+        show_scene(plotter, "99_axes", **(WORDS | words))
+        assert plotter._closed
+        bundle = outputs.pop()._repr_mimebundle_()
+        assert bundle["text/plain"] == 'Scene: Axes & "more"'
+        return bundle["text/html"]
 
     return show
 
 
-def pages(folder) -> list[str]:
-    return sorted(path.relative_to(folder).as_posix() for path in folder.glob("**/*.html"))
+def pages(folder) -> dict[str, tuple]:
+    found = {path.relative_to(folder).as_posix(): path for path in folder.glob("**/*.html")}
+    return {name: (path.stat().st_mtime_ns, path.read_bytes()) for name, path in found.items()}
 
 
 def test_a_scene_is_a_titled_frame_and_below_it_a_folded_picture(shown):
-    bundle = shown(store=True)
-    assert bundle["text/plain"] == 'Scene: Axes & "more"'
-    found = re.fullmatch(
-        r'<iframe src="scenes/99_axes.html" title="Axes &amp; &quot;more&quot;" width="100%" height="\d+"[^>]*>'
-        r"</iframe>"
-        r"<details><summary>[^<]+</summary>"
-        r'<img alt="The axes of a pose seen from above" src="data:image/png;base64,[^"]+"[^>]*></details>',
-        bundle["text/html"],
-    )
-    assert found
+    frame = r'<iframe src="scenes/99_axes.html" title="Axes &amp; &quot;more&quot;" width="100%" height="500"[^>]*>'
+    folded = rf"<details><summary>[^<]+</summary>{PICTURE}</details>"
+    assert re.fullmatch(f"{frame}</iframe>{folded}", shown(store=True))
+    assert Scene("scenes/a.html", "A page that another program wrote", 300).html().endswith("</iframe>")
 
 
-def test_refresh_stores_the_page_and_the_same_lines_write_nothing(shown, tmp_path):
+def test_the_same_lines_write_nothing_and_others_leave_the_stored_page_alone(shown, tmp_path):
+    assert YOURS in shown(), "a lesson without its stored page"
     shown(store=True)
-    before = (tmp_path / STORED).stat()
-    assert STORED in shown()["text/html"]
-    assert pages(tmp_path) == [STORED]
-    assert (tmp_path / STORED).stat().st_mtime_ns == before.st_mtime_ns
+    before = pages(tmp_path)
+    assert STORED in shown()
+    assert pages(tmp_path) == before
+    assert YOURS in shown(x=1.1)
+    after = pages(tmp_path)
+    assert before.keys() == after.keys() == {STORED, YOURS}
+    assert before[STORED] == after[STORED]
+    assert before[YOURS] != after[YOURS]
 
 
-def test_changed_lines_are_shown_and_leave_the_stored_page_alone(shown, tmp_path):
-    shown(store=True)
-    before = (tmp_path / STORED).read_bytes()
-    assert YOURS in shown(x=1.1)["text/html"]
-    assert pages(tmp_path) == [STORED, YOURS]
-    assert (tmp_path / STORED).read_bytes() == before
-    assert (tmp_path / YOURS).read_bytes() != before
-
-
-def test_a_page_of_another_processor_is_still_the_stored_one(shown, tmp_path):
-    shown(store=True)
-    assert STORED in shown(x=1.00001)["text/html"]
-    assert pages(tmp_path) == [STORED]
-
-
-def test_a_lesson_without_its_stored_page_writes_its_own(shown, tmp_path):
-    assert YOURS in shown()["text/html"]
-    assert pages(tmp_path) == [YOURS]
-
-
-def test_where_no_page_can_be_made_the_picture_is_shown_and_the_cure(shown, tmp_path, monkeypatch):
+def test_where_no_page_can_be_made_or_written_the_picture_is_shown_and_the_cure(shown, tmp_path, monkeypatch):
     def no_page(*_):
         raise ScenePageError("PyVista lacks what writes pages: pip install <this>")
 
-    monkeypatch.setattr(scene, "page_html", no_page)
-    bundle = shown()
-    assert bundle["text/plain"] == 'Scene: Axes & "more"'
-    assert "<iframe" not in bundle["text/html"]
-    assert bundle["text/html"].startswith('<img alt="The axes of a pose seen from above"')
-    assert "pip install &lt;this&gt;" in bundle["text/html"]
-    assert pages(tmp_path) == []
-
-
-def test_where_nothing_can_be_written_the_picture_is_shown(shown, tmp_path):
     (tmp_path / "scenes").write_text("a file, not a folder")
-    assert "<iframe" not in shown()["text/html"]
+    assert re.match(f"{PICTURE}<p>", shown())
+    monkeypatch.setattr(scene, "page_html", no_page)
+    assert re.match(rf"{PICTURE}<p>.*pip install &lt;this&gt;</p>", shown())
+    assert pages(tmp_path) == {}
 
 
-def test_the_picture_shows_the_scene_and_is_small():
-    picture = np.asarray(Image.open(io.BytesIO(small_picture(axes_plotter()))).convert("RGB"))
-    assert picture.shape == (500, 800, 3)
-    assert (picture.max(axis=2).astype(int) - picture.min(axis=2) > 100).sum() > 500, "coloured axes on white"
-
-
-def test_a_restless_picture_becomes_smaller():
-    import pyvista
-
+def test_the_picture_shows_the_scene_and_a_restless_one_becomes_smaller():
     plotter = axes_plotter()
+    picture = np.asarray(Image.open(io.BytesIO(small_picture(plotter))).convert("RGB"))
+    assert picture.shape == (500, 800, 3)
+    assert (np.ptp(picture.astype(int), axis=2) > 100).sum() > 500, "coloured axes on white"
     points = np.random.default_rng(0).uniform(-3, 5, size=(30_000, 3))
     plotter.add_mesh(pyvista.PolyData(points), scalars=points[:, 0], point_size=3)
     png = small_picture(plotter)
     assert len(png) <= MAX_PICTURE_BYTES
     assert Image.open(io.BytesIO(png)).width < 800
-
-
-def test_the_plotter_is_closed(monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(scene, "display", lambda _: None)
-    plotter = axes_plotter()
-    show_scene(plotter, "99_axes", **WORDS)
-    assert plotter._closed
 
 
 @pytest.mark.parametrize("name", ["frustum", "../01_frustum", "01_frustum.html", "1_a"])
@@ -139,19 +101,8 @@ def test_a_name_says_the_lesson(name):
         show_scene(axes_plotter(), name, **WORDS)
 
 
-def test_words_are_needed(shown):
+def test_words_and_objects_are_needed(shown):
     with pytest.raises(FigureError, match="alternative text"):
         shown(alt="axes")
-
-
-def test_an_empty_scene_is_refused():
     with pytest.raises(SceneError, match="empty"):
         show_scene(scenes.new_plotter(), "99_axes", **WORDS)
-
-
-def test_a_scene_without_a_picture_is_its_frame():
-    bundle = Scene("scenes/a.html", 'A "quoted" title', 300)._repr_mimebundle_()
-    assert bundle["text/html"].startswith('<iframe src="scenes/a.html" title="A &quot;quoted&quot; title"')
-    assert bundle["text/html"].endswith("</iframe>")
-    png = png_bytes(figures.new_figure(size=(1, 1))[0])
-    assert Scene("a", "A title", picture=Picture(png, "A picture of something seen")).html().endswith("</details>")

@@ -7,24 +7,25 @@ from course_lib.geometry import optical_pose, pose_matrix
 from course_lib.lessons.kit.scene_objects import arrows, depth_surface
 from tests.plots.test_scenes import CAMERA, STATE
 
+DEPTH = np.full(CAMERA.shape, 3.0)
+
 
 def test_arrows_point_along_x_with_their_fin_up():
-    states = np.array([STATE, np.zeros(6)])
-    mesh = arrows(states, 0.4, weights=np.array([0.25, 0.75]))
+    mesh = arrows(np.array([STATE, np.zeros(6)]), 0.4, weights=np.array([0.25, 0.75]))
     darts = np.asarray(mesh.points).reshape(2, 5, 3)
-    tip_from_notch = pose_matrix(STATE)[:3, 0]
     heading = darts[0, 0] - darts[0, 3]
-    assert np.allclose(heading / np.linalg.norm(heading), tip_from_notch, atol=1e-5)
-    assert np.ptp(darts[1, :, 0]) == pytest.approx(0.4)
-    assert darts[1, 4, 2] > 0
+    assert np.allclose(heading / np.linalg.norm(heading), pose_matrix(STATE)[:3, 0], atol=1e-5)
+    assert np.allclose(
+        darts[1], 0.4 * np.array([[0.6, 0, 0], [-0.4, 0.3, 0], [-0.4, -0.3, 0], [-0.2, 0, 0], [-0.4, 0, 0.2]])
+    )
     assert np.asarray(mesh["weight"]).reshape(2, 5).tolist() == [[0.25] * 5, [0.75] * 5]
-    assert mesh.n_cells == 6
+    first, second = mesh.regular_faces.reshape(2, 3, 3)
+    assert second.tolist() == (first + 5).tolist()
+    assert np.allclose(mesh.cell_centers().points[3:, 1], [0.04, -0.04, 0.0]), "two halves, and a fin between them"
 
 
 def test_a_depth_image_becomes_the_surface_that_it_shows():
-    depth = np.full(CAMERA.shape, 3.0)
-    mesh = depth_surface(depth, CAMERA, STATE)
-    matrix = optical_pose(STATE)
+    mesh, matrix = depth_surface(DEPTH, CAMERA, STATE), optical_pose(STATE)
     local = (np.asarray(mesh.points, float) - matrix[:3, 3]) @ matrix[:3, :3]
     assert np.allclose(local[:, 2], 3.0, atol=1e-5)
     assert np.allclose(np.sort(CAMERA.project(local)[0])[[0, -1]], [0, 39], atol=1e-3)
@@ -33,8 +34,7 @@ def test_a_depth_image_becomes_the_surface_that_it_shows():
 
 
 def test_a_surface_is_cut_at_edges_and_at_pixels_without_depth():
-    depth = np.full(CAMERA.shape, 3.0)
-    depth[:, 20:] = 5.0
+    depth = np.where(np.arange(40) < 20, 3.0, 5.0) * np.ones((30, 1))
     depth[0, 0], depth[-1, 0] = np.nan, np.inf
     mesh = depth_surface(depth, CAMERA, STATE)
     # Of the corner squares, the one cut by the diagonal loses both triangles, the other one.

@@ -7,52 +7,39 @@ import numpy as np
 REACH = np.array([0.4, 0.3, 0.18])
 
 
-def vote_by_vote(vote, alpha):
-    return np.reshape([math.inf if v == 0 else alpha * (1 - v) / v for v in vote.flat], vote.shape)
+# Offsets from the best pose so far, round after round: along x, y and yaw in turn, and on grids, ever closer.
+IN_TURN = [0.6 ** (k // 3) * np.linspace(-1, 1, 16)[:, None] * REACH * np.eye(3)[k % 3] for k in range(24)]
+GRIDS = [
+    0.45**k * REACH * np.stack(np.meshgrid(*[np.linspace(-1, 1, n) for n in counts]), axis=-1).reshape(-1, 3)
+    for k, counts in enumerate(((6, 5, 5), *[(4, 4, 3)] * 4))
+]
 
 
-def coordinate_after_coordinate(score, start):
-    """Rounds over x, y and yaw, each time the best of a few values, ever closer about the last best."""
-    best = start
-    for reach in (0.6**k * REACH for k in range(8)):
-        for k in range(3):
-            tried = best + np.linspace(-1, 1, 16)[:, None] * reach * np.eye(3)[k]
-            best = tried[np.argmax(score(tried))]
-    return best
+def best_of(score, start, rounds):
+    for offsets in rounds:
+        cloud = start + offsets
+        start = cloud[np.argmax(score(cloud))]
+    return start
 
 
 def one_pose_at_a_time(score, start):
     """A walk: a random step is kept where it leads uphill; the steps grow shorter."""
-    rng = np.random.default_rng(1)
-    best, height = start, score(start)
+    rng, best, height = np.random.default_rng(1), start, score(start)
     for k in range(399):
         tried = best + 0.985**k * np.array([0.3, 0.25, 0.12]) * rng.normal(size=3)
-        if (value := score(tried)) > height:
-            best, height = tried, value
+        best, height = max((best, height), (tried, score(tried)), key=lambda pose: pose[1])
     return best.tolist()
 
 
 def weighted_cloud(score, start):
     """A small particle filter: resampled by a power of the score, moved less and less."""
-    rng = np.random.default_rng(2)
-    cloud, reach = np.tile(start, (50, 1)), np.array([0.3, 0.22, 0.12])
-    for _ in range(8):
-        cloud = cloud + reach * rng.normal(size=cloud.shape)
+    rng, cloud = np.random.default_rng(2), np.tile(start, (50, 1))
+    for k in range(8):
+        cloud = cloud + 0.6**k * np.array([0.3, 0.22, 0.12]) * rng.normal(size=cloud.shape)
         values = score(cloud)
         best = cloud[values.argmax()]
-        cloud = cloud[rng.choice(50, 50, p=values**30 / (values**30).sum())]
-        cloud[0], reach = best, 0.6 * reach
+        cloud = np.vstack([best, cloud[rng.choice(50, 49, p=values**30 / (values**30).sum())]])
     return best
-
-
-def grids_about_the_best(score, start):
-    """A coarse grid over the whole box, then four finer ones about the best of each."""
-    best, reach = start, REACH
-    for counts in ((6, 5, 5), *[(4, 4, 3)] * 4):
-        steps = np.stack(np.meshgrid(*[np.linspace(-1, 1, k) for k in counts]), axis=-1).reshape(-1, 3)
-        cloud = best + steps * reach
-        best, reach = cloud[np.argmax(score(cloud))], 0.45 * reach
-    return list(best)
 
 
 RIGHT = [
@@ -61,10 +48,10 @@ RIGHT = [
     ("00.1", lambda m, s: np.abs(m.astype(np.float32) - s.astype(np.float32))),
     ("00.1", lambda m, s: np.sqrt((s - m) ** 2)),
     ("00.2", lambda v, a: a * (1 - v) / v),
-    ("00.2", vote_by_vote),
+    ("00.2", lambda v, a: np.reshape([math.inf if x == 0 else a * (1 - x) / x for x in v.flat], v.shape)),
     ("00.2", lambda v, a: a * (1 / v - 1)),
-    ("00.3", coordinate_after_coordinate),
+    ("00.3", lambda score, start: best_of(score, start, IN_TURN)),
+    ("00.3", lambda score, start: list(best_of(score, start, GRIDS))),
     ("00.3", one_pose_at_a_time),
     ("00.3", weighted_cloud),
-    ("00.3", grids_about_the_best),
 ]

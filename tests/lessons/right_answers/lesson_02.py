@@ -6,18 +6,15 @@ from itertools import accumulate
 import numpy as np
 
 
-def aimed(points):
-    """Range, azimuth, elevation one point after the other, with the standard library."""
-    ranges = [math.dist(p, (0, 0, 0)) for p in points]
-    return ranges, [math.atan2(y, x) for x, y, _ in points], [math.asin(z) for z in points[:, 2] / ranges]
+def elevation(p):
+    return math.asin(p[2] / math.hypot(*p))
 
 
 def walked(steps):
     """Places of a chain, with a place and a turn carried along."""
     place, turn, places = np.zeros(3), np.eye(3), [[0.0, 0.0, 0.0]]
     for step in steps:
-        place = place + turn @ step[:3, 3]
-        turn = turn @ step[:3, :3]
+        place, turn = place + turn @ step[:3, 3], turn @ step[:3, :3]
         places.append(list(place))
     return places
 
@@ -39,15 +36,9 @@ def simulated_sigma(n_steps, spacing, sigma_place, sigma_heading, runs=10_000):
 
 
 RIGHT = [
-    ("02.1", aimed),
-    ("02.1", lambda p: np.stack([np.linalg.norm(p, axis=1), np.angle(p[:, 0] + 1j * p[:, 1]), aimed(p)[2]])),
-    (
-        "02.1",
-        lambda p: [
-            [f(q) for q in p]
-            for f in (np.linalg.norm, lambda q: math.atan2(q[1], q[0]), lambda q: math.asin(q[2] / np.linalg.norm(q)))
-        ],
-    ),
+    ("02.1", lambda p: ([math.hypot(*q) for q in p], [math.atan2(q[1], q[0]) for q in p], [*map(elevation, p)])),
+    ("02.1", lambda p: np.stack([np.linalg.norm(p, axis=1), np.angle(p[:, 0] + 1j * p[:, 1]), [*map(elevation, p)]])),
+    ("02.1", lambda p: [[f(q) for q in p] for f in (np.linalg.norm, lambda q: math.atan2(q[1], q[0]), elevation)]),
     ("02.2", walked),
     ("02.2", lambda steps: np.stack(list(accumulate(steps, np.matmul, initial=np.eye(4))))[:, :3, 3]),
     ("02.3", lambda s, m, limit: np.array([np.mean(nearest(s, m) > limit)])),

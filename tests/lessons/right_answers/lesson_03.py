@@ -16,10 +16,10 @@ def by_cases(corners, near):
     before = corners[:, 2] < near
     if before.sum() in (0, 3):
         return [] if before.all() else corners.tolist()
-    k = int(np.flatnonzero(before == (before.sum() == 1))[0])
-    alone, second, third = corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]
-    meets = [alone + (near - alone[2]) / (other[2] - alone[2]) * (other - alone) for other in (second, third)]
-    return np.array([meets[0], second, third, meets[1]] if before.sum() == 1 else [alone, *meets])
+    k = np.flatnonzero(before == (before.sum() == 1))[0]
+    alone, *others = np.roll(corners, -k, axis=0)
+    first, last = (alone + (near - alone[2]) / (other[2] - alone[2]) * (other - alone) for other in others)
+    return np.array([first, *others, last] if before.sum() == 1 else [alone, first, last])
 
 
 RIGHT = [

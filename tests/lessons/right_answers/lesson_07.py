@@ -6,16 +6,6 @@ import numpy as np
 from scipy.stats import binom
 
 
-def mean_point(angles, w):
-    return w @ np.exp(1j * angles)
-
-
-def parts_by_loop(w):
-    owed = [len(w) * share for share in w]
-    rest = np.array([n - int(n) for n in owed])
-    return [int(n) for n in owed], rest / sum(rest)
-
-
 def strata(w):
     """For each part of the strip the probabilities (N,) of its draw, by cutting the strip at every border."""
     n, right = len(w), np.cumsum(w)
@@ -27,25 +17,19 @@ def strata(w):
 
 
 def error_by_parts(w, x):
-    means, squares = strata(w) @ x, strata(w) @ x**2
-    return np.sqrt(np.sum(np.maximum(squares - means**2, 0))) / len(w)
-
-
-def error_by_covariance(w, x):
-    """From the covariance of the numbers of copies."""
-    covariance = sum(np.diag(p) - np.outer(p, p) for p in strata(w))
-    return (x @ covariance @ x) ** 0.5 / len(w)
+    return np.sqrt(np.sum(np.maximum(strata(w) @ x**2 - (strata(w) @ x) ** 2, 0))) / len(w)
 
 
 RIGHT = [
-    ("07.1", lambda y, w: (np.angle(mean_point(y, w)), abs(mean_point(y, w)))),
-    ("07.1", lambda y, w: [np.array([np.angle(mean_point(y, w))]), np.float32(abs(mean_point(y, w)))]),
+    ("07.1", lambda y, w: (np.angle(w @ np.exp(1j * y)), abs(w @ np.exp(1j * y)))),
+    ("07.1", lambda y, w: [np.array([np.angle(w @ np.exp(1j * y))]), np.float32(abs(w @ np.exp(1j * y)))]),
     ("07.2", lambda w: [(len(w) * w).astype(int), (len(w) * w % 1) / np.sum(len(w) * w % 1)]),
-    ("07.2", parts_by_loop),
+    ("07.2", lambda w: ([int(len(w) * share) for share in w], np.modf(len(w) * w)[0] / sum(np.modf(len(w) * w)[0]))),
     ("07.3", lambda w: len(w) - sum((1 - share) ** len(w) for share in w)),
     ("07.3", lambda w: np.array([np.sum(1 - np.prod(np.tile(1 - w, (len(w), 1)), axis=0))])),
     ("07.3", lambda w: binom.sf(0, len(w), w).sum()),
     ("07.4", error_by_parts),
-    ("07.4", error_by_covariance),
+    # From the covariance of the numbers of copies.
+    ("07.4", lambda w, x: (x @ sum(np.diag(p) - np.outer(p, p) for p in strata(w)) @ x) ** 0.5 / len(w)),
     ("07.4", lambda w, x: np.float32([error_by_parts(w, x)])),
 ]

@@ -23,24 +23,23 @@ def until_still(rotations, w):
     return mean.tolist()
 
 
-def by_pseudo_inverse(errors, covariances):
-    squares = [e @ np.linalg.pinv(c, rcond=1e-15) @ e for e, c in zip(errors, covariances, strict=True)]
-    inside = sum(e[k] ** 2 <= 9 * c[k, k] for e, c in zip(errors, covariances, strict=True) for k in range(len(e)))
-    return [sum(squares) / errors.size, inside / errors.size]
-
-
-def by_inverse(e, c):
-    sigma = np.sqrt(np.diagonal(c, axis1=1, axis2=2))
-    squared = np.mean(np.einsum("ti,tij,tj->t", e, np.linalg.inv(c), e)) / e.shape[1]
-    return np.array([squared, 1 - np.mean(abs(e) > 3 * sigma)])
-
-
 def in_the_world(rotations, w):
     """Both in the world's axes: the turns seen from there, and the step on the left."""
     mean = rotations[0]
     for _ in range(20):
         mean = rotation_exp(w @ rotation_log(rotations @ mean.T)) @ mean
     return mean
+
+
+def by_pseudo_inverse(errors, covariances):
+    pairs = list(zip(errors, covariances, strict=True))
+    inside = np.mean([e[k] ** 2 <= 9 * c[k, k] for e, c in pairs for k in range(len(e))])
+    return [sum(e @ np.linalg.pinv(c, rcond=1e-15) @ e for e, c in pairs) / errors.size, inside]
+
+
+def by_inverse(e, c):
+    squared = np.mean(np.einsum("ti,tij,tj->t", e, np.linalg.inv(c), e)) / e.shape[1]
+    return np.array([squared, 1 - np.mean(abs(e) > 3 * np.sqrt(np.diagonal(c, axis1=1, axis2=2)))])
 
 
 def walls(points, normals, offsets, scale, steps=40):
@@ -67,18 +66,17 @@ def by_scipy(points, normals, offsets, scale):
     return least_squares(r, np.zeros(3), loss=loss, f_scale=scale, xtol=1e-14, ftol=1e-14, gtol=1e-14).x
 
 
-RIGHT = [
-    ("09.1", lambda n, d, k: np.exp(k / d * np.log(n))),
-    ("09.1", lambda n, d, k: np.array([(n ** (1 / d)) ** k])[0]),
-    ("09.2", by_vectors),
-    ("09.2", until_still),
-    ("09.2", in_the_world),
-    ("09.2", lambda rot, w: by_vectors(rot, w, start=-1)),
-    ("09.2", lambda rot, w: by_vectors(rot, w).round(9)),
-    ("09.2", lambda rot, w: by_vectors(rot, w, start=int(w.argmax())).tolist()),
-    ("09.3", by_pseudo_inverse),
-    ("09.3", by_inverse),
-    ("09.4", walls),
-    ("09.4", lambda p, n, c, s: np.array(walls(p, n, c, s, steps=25), dtype=np.float32)),
-    ("09.4", by_scipy),
-]
+ANSWERS = {
+    "09.1": [lambda n, d, k: np.exp(k / d * np.log(n)), lambda n, d, k: np.array([(n ** (1 / d)) ** k])[0]],
+    "09.2": [
+        by_vectors,
+        until_still,
+        in_the_world,
+        lambda rotations, w: by_vectors(rotations, w, start=-1),
+        lambda rotations, w: by_vectors(rotations, w).round(9),
+        lambda rotations, w: by_vectors(rotations, w, start=int(w.argmax())).tolist(),
+    ],
+    "09.3": [by_pseudo_inverse, by_inverse],
+    "09.4": [walls, by_scipy, lambda *given: np.array(walls(*given, steps=25), dtype=np.float32)],
+}
+RIGHT = [(number, answer) for number, answers in ANSWERS.items() for answer in answers]

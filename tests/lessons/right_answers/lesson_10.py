@@ -1,5 +1,6 @@
 """Right answers to lesson 10 by other ways than its solutions."""
 
+from itertools import accumulate
 from statistics import NormalDist
 
 import numpy as np
@@ -7,61 +8,27 @@ from scipy.optimize import brentq
 
 from course_lib.beyond.lost_and_found.adaptive_count import kld_count
 
-
-def kept_by(near_enough, order=lambda scores: np.argsort(-scores)):
-    def answer(states, scores, metres, radians):
-        kept = []
-        for i in order(scores):
-            if not any(near_enough(states[i], states[j], metres, radians) for j in kept):
-                kept.append(int(i))
-        return np.array(kept)
-
-    return answer
+ENOUGH = 10**6
 
 
 def by_running_sum(free, cell, u):
     chosen = np.searchsorted(np.cumsum(free.ravel()), u[:, 0] * free.sum(), side="right")
-    return [cell * (chosen % free.shape[1] + u[:, 1]), cell * (chosen // free.shape[1] + u[:, 2])]
-
-
-ENOUGH = 10**6
-
-
-def chosen_cells(free, u):
-    listed = [(r, c) for r in range(free.shape[0]) for c in range(free.shape[1]) if free[r, c]]
-    return [listed[int(a * len(listed))] for a in u[:, 0]]
+    return np.transpose([cell * (chosen % free.shape[1] + u[:, 1]), cell * (chosen // free.shape[1] + u[:, 2])])
 
 
 def by_loops(free, cell, u):
-    places = [(c + x, r + y) for (r, c), (_, x, y) in zip(chosen_cells(free, u), u, strict=True)]
-    return [[cell * x, cell * y] for x, y in places]
-
-
-def by_argwhere(free, cell, u):
-    corners = np.argwhere(free)[np.floor(u[:, 0] * free.sum()).astype(int)]
-    return ((corners[:, ::-1] + u[:, 1:]) * cell).astype(np.float32)
+    listed = [(r, c) for r in range(free.shape[0]) for c in range(free.shape[1]) if free[r, c]]
+    chosen = [listed[int(a * len(listed))] for a in u[:, 0]]
+    return [[cell * (c + x), cell * (r + y)] for (r, c), (_, x, y) in zip(chosen, u, strict=True)]
 
 
 def means(scores, share):
-    found = [scores[0]]
-    for score in scores[1:]:
-        found.append(found[-1] if np.isnan(score) else share * score + (1 - share) * found[-1])
-    return np.array(found)
+    return np.array(list(accumulate(scores, lambda m, s: m if np.isnan(s) else share * s + (1 - share) * m)))
 
 
-def by_ratio(scores, short, long):
-    return np.clip(1 - means(scores, short) / means(scores, long), 0, None)
-
-
-def by_list(scores, short, long):
-    return [float(max(0, (u - s) / u)) for s, u in zip(means(scores, short), means(scores, long), strict=True)]
-
-
-def by_unique(bins, least):
-    for n in range(1, len(bins) + 1):
-        if n >= kld_count(len(set(bins[:n].tolist())), least, ENOUGH):
-            return n
-    return len(bins)
+def by_slices(bins, least):
+    ends = range(1, len(bins) + 1)
+    return next((n for n in ends if n >= kld_count(len(set(bins[:n].tolist())), least, ENOUGH)), len(bins))
 
 
 def by_while(bins, least):
@@ -77,43 +44,43 @@ def near(a, b, metres, radians):
     return np.hypot(a[0] - b[0], a[1] - b[1]) < metres and min(turn, 2 * np.pi - turn) < radians
 
 
-def by_lists(states, scores, metres, radians):
+def by_lists(states, scores, *limits):
     kept = []
     for i in sorted(range(len(scores)), key=lambda i: -scores[i]):
-        if all(not near(states[i], states[j], metres, radians) for j in kept):
+        if all(not near(states[i], states[j], *limits) for j in kept):
             kept.append(i)
     return kept
 
 
-def by_striking_out(states, scores, metres, radians):
+def by_striking_out(states, scores, *limits):
     left, kept = set(range(len(scores))), []
     while left:
-        best = max(left, key=lambda i: scores[i])
-        kept.append(best)
-        left -= {i for i in left if i == best or near(states[i], states[best], metres, radians)}
+        kept.append(best := max(left, key=lambda i: scores[i]))
+        left -= {i for i in left if i == best or near(states[i], states[best], *limits)}
     return np.array(kept, dtype=np.int32)
 
 
 def by_counting(bins, miss, probability):
     """Draw by draw; then the error by bisection of (10.3)."""
-    least, empty = 0, 1.0
+    least, empty, share = 0, 1.0, 2 / (9 * (bins - 1))
     while empty > miss * (1 + 1e-12):
         least, empty = least + 1, empty * (1 - 1 / bins)
-    share = 2 / (9 * (bins - 1))
     wanted = (bins - 1) / 2 * (1 - share + np.sqrt(share) * NormalDist().inv_cdf(probability)) ** 3
     return least, brentq(lambda error: wanted / error - least, 1e-9, 1e3, xtol=1e-12)
 
 
-RIGHT = [
-    ("10.5", by_counting),
-    ("10.1", lambda free, cell, u: np.transpose(by_running_sum(free, cell, u))),
-    ("10.1", by_loops),
-    ("10.1", by_argwhere),
-    ("10.2", by_ratio),
-    ("10.2", by_list),
-    ("10.3", by_unique),
-    ("10.3", by_while),
-    ("10.4", kept_by(near, order=lambda scores: np.argsort(scores)[::-1])),
-    ("10.4", by_lists),
-    ("10.4", by_striking_out),
-]
+ANSWERS = {
+    "10.1": [
+        by_running_sum,
+        by_loops,
+        lambda f, c, u: np.float32((np.argwhere(f)[np.floor(u[:, 0] * f.sum()).astype(int), ::-1] + u[:, 1:]) * c),
+    ],
+    "10.2": [
+        lambda s, a, b: [float(max(0, (u - v) / u)) for v, u in zip(means(s, a), means(s, b), strict=True)],
+        lambda s, a, b: np.clip(1 - means(s, a) / means(s, b), 0, None),
+    ],
+    "10.3": [by_slices, by_while],
+    "10.4": [by_lists, by_striking_out, lambda *given: np.array(by_lists(*given))],
+    "10.5": [by_counting],
+}
+RIGHT = [(number, answer) for number, answers in ANSWERS.items() for answer in answers]

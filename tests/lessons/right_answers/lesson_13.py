@@ -1,7 +1,5 @@
 """Right answers to lesson 13 by other ways than its solutions."""
 
-import itertools
-
 import numpy as np
 
 from course_lib.geometry import wrap_angle
@@ -13,10 +11,9 @@ def by_angles(upper, lower, baseline):
     """Turn the whole scene until the baseline is upright, and use equation (13.2)."""
     ahead = np.cross(np.eye(3)[np.argmin(np.abs(baseline))], baseline)
     ahead /= np.linalg.norm(ahead)
-    axes = np.stack([ahead, np.cross(baseline, ahead), baseline], axis=1)
-    (a_u, _), (a_l, e_l) = ((np.arctan2(d[:, 1], d[:, 0]), np.arcsin(d[:, 2])) for d in (upper @ axes, lower @ axes))
-    gap = np.abs(wrap_angle(a_l - a_u))
-    return np.where(gap > PI / 2, PI / 2 - np.abs(e_l), np.arcsin(np.cos(e_l) * np.sin(gap)))
+    (x, y, _), (x_l, y_l, z_l) = (np.stack([ahead, np.cross(baseline, ahead), baseline]) @ d.T for d in (upper, lower))
+    gap = np.abs(wrap_angle(np.arctan2(y_l, x_l) - np.arctan2(y, x)))
+    return np.where(gap > PI / 2, np.arccos(np.abs(z_l)), np.arcsin(np.sqrt(1 - z_l**2) * np.sin(gap)))
 
 
 def nearest_point(upper, lower, baseline):
@@ -24,48 +21,44 @@ def nearest_point(upper, lower, baseline):
     ahead = upper - np.outer(upper @ baseline, baseline)
     ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
     along = np.clip(np.arctan2(lower @ baseline, np.sum(lower * ahead, axis=1)), -PI / 2, PI / 2)[:, None]
-    foot = np.cos(along) * ahead + np.sin(along) * baseline
-    return list(2 * np.arcsin(np.linalg.norm(lower - foot, axis=1) / 2))
+    return list(2 * np.arcsin(np.linalg.norm(lower - np.cos(along) * ahead - np.sin(along) * baseline, axis=1) / 2))
 
 
 def count_by_count(counts):
     """From the largest count down: what hangs together by one count is a pair, or a tie."""
-    free_rows, free_columns, result = set(range(len(counts))), set(range(counts.shape[1])), [-1] * len(counts)
-    for count in sorted(set(counts[counts > 0].tolist()), reverse=True):
-        places = [(i, j) for i, j in itertools.product(free_rows, free_columns) if counts[i, j] == count]
+    left, result = np.argwhere(counts > 0).tolist(), [-1] * len(counts)
+    while left:
+        places = [(i, j) for i, j in left if counts[i, j] == max(counts[place] for place in map(tuple, left))]
         for i, j in places:
-            if sum(p[0] == i for p in places) == 1 == sum(p[1] == j for p in places):
+            if sum(i == row or j == column for row, column in places) == 1:
                 result[i] = j
-        free_rows -= {i for i, _ in places}
-        free_columns -= {j for _, j in places}
+        left = [(i, j) for i, j in left if not any(i == row or j == column for row, column in places)]
     return result
-
-
-def gaps(upper, lower):
-    return np.degrees(wrap_angle(upper - lower))
 
 
 def wrapped(angle):
     return (angle + 180) % 360 - 180
 
 
+def near(gap, about):
+    return wrapped(gap - about)[np.abs(wrapped(gap - about)) < 2]
+
+
 def by_histogram(upper, lower):
-    counts, edges = np.histogram(gaps(upper, lower), np.arange(-180, 181))
-    about = edges[np.argmax(counts + np.roll(counts, 1))]
-    near = wrapped(gaps(upper, lower) - about)
-    good = near[np.abs(near) < 2]
+    gap = np.degrees(wrap_angle(upper - lower))
+    counts, edges = np.histogram(gap, np.arange(-180, 181))
+    good = near(gap, about := edges[np.argmax(counts + np.roll(counts, 1))])
     return wrapped(about + good.mean()), good.std() / np.sqrt(len(good))
 
 
 def by_median(upper, lower):
     """The shortest stretch that holds a third of the matches, then the median of what is near it."""
-    gap = np.sort(gaps(upper, lower))
+    gap = np.sort(np.degrees(wrap_angle(upper - lower)))
     twice, third = np.r_[gap, gap + 360], (len(gap) + 1) // 3
     k = np.argmin(twice[third : third + len(gap)] - twice[: len(gap)])
-    near = wrapped(gap - (about := (twice[k] + twice[k + third]) / 2))
-    near = near[np.abs(near) < 2]
-    spread = 1.4826 * np.median(np.abs(near - np.median(near)))
-    return [wrapped(about + np.median(near)), 1.25 * spread / len(near) ** 0.5]
+    good = near(gap, about := (twice[k] + twice[k + third]) / 2)
+    spread = 1.4826 * np.median(np.abs(good - np.median(good)))
+    return [wrapped(about + np.median(good)), 1.25 * spread / len(good) ** 0.5]
 
 
 RIGHT = [

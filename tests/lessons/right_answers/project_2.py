@@ -17,61 +17,49 @@ def angles_by_direction(box, width):
 
 
 def angles_of_a_wrapped_column(box, width):
-    u_min, v_min, u_max, v_max = box
-    u = (u_min + u_max) / 2
-    if u >= width:
-        u -= width
-    return PI - 2 * PI * u / width, PI / 2 - PI * (v_min + v_max) / width
+    u = (box[0] + box[2]) / 2
+    return PI - 2 * PI * (u - width if u >= width else u) / width, PI / 2 - PI * (box[1] + box[3]) / width
 
 
-def pairs_from_a_sorted_list(upper_labels, upper, lower_labels, lower, largest):
-    """All pairs that may be, sorted by their gap, each taken where both are still free."""
-    candidates = []
-    for i, (a, e) in enumerate(upper):
-        for j, (b, f) in enumerate(lower):
-            gap = abs(cmath.phase(cmath.exp(1j * (a - b))))
-            if upper_labels[i] == lower_labels[j] and f > e and gap <= largest:
-                candidates.append((gap, i, j))
-    partner, taken = [-1] * len(upper), set()
-    for _, i, j in sorted(candidates):
-        if partner[i] < 0 and j not in taken:
-            partner[i] = j
-            taken.add(j)
-    return partner
+def greedy_by_sorting(cost, limit=100):
+    """Take all pairs in the order of their cost, each if both are still free."""
+    found = [-1] * len(cost)
+    for _, i, j in sorted((c, i, j) for i, row in enumerate(cost) for j, c in enumerate(row) if c < limit):
+        if found[i] < 0 and j not in found:
+            found[i] = j
+    return found
 
 
-def pairs_as_floats(*given):
-    return np.array(pairs_from_a_sorted_list(*given), dtype=np.float32)
+def pairs_by_sorting(upper_labels, upper, lower_labels, lower, largest):
+    gaps = [[abs(cmath.phase(cmath.exp(1j * (a - b)))) for b, _ in lower] for a, _ in upper]
+    for i, j in np.ndindex(len(upper), len(lower)):
+        if upper_labels[i] != lower_labels[j] or lower[j][1] <= upper[i][1] or gaps[i][j] > largest:
+            gaps[i][j] = math.inf
+    return greedy_by_sorting(gaps, math.inf)
 
 
 def places_by_loop(upper, lower, baseline):
     rows = []
     for (a, e), (_, f) in zip(upper, lower, strict=True):
-        if f - e <= 0.001:
-            rows.append([math.nan, math.nan])
-            continue
-        d = baseline * math.cos(f) / math.sin(f - e)
+        d = baseline * math.cos(f) / math.sin(f - e) if f - e > 0.001 else math.nan
         rows.append([d * math.cos(e) * math.cos(a), d * math.cos(e) * math.sin(a)])
     return np.array(rows).reshape(-1, 2)
 
 
 def places_by_complex_numbers(upper, lower, baseline):
     gone = lower[:, 1] - upper[:, 1] <= 1e-3
-    slope = np.where(gone, np.nan, np.tan(lower[:, 1]) - np.tan(upper[:, 1]))
-    z = baseline / slope * np.exp(1j * upper[:, 0])
+    z = baseline / np.where(gone, np.nan, np.tan(lower[:, 1]) - np.tan(upper[:, 1])) * np.exp(1j * upper[:, 0])
     return np.stack([z.real, z.imag], axis=1)
 
 
 def penalties_by_loops(labels, places, hues, saturations, map_labels, map_places, map_hues, map_saturations):
     near, far = np.mean(places, axis=0), np.mean(map_places, axis=0)
     table = [[0.0] * len(map_labels) for _ in labels]
-    for i in range(len(labels)):
-        for j in range(len(map_labels)):
-            turn = abs((hues[i] - map_hues[j] + 180) % 360 - 180)
-            c, m = math.dist(places[i], near), math.dist(map_places[j], far)
-            table[i][j] = 0.0 if labels[i] == map_labels[j] else 100.0
-            table[i][j] += 0.0 if math.isnan(turn) else turn / 360
-            table[i][j] += abs(saturations[i] - map_saturations[j]) / 100 + abs(c - m) / max(m, 0.1)
+    for i, j in np.ndindex(len(labels), len(map_labels)):
+        turn = abs((hues[i] - map_hues[j] + 180) % 360 - 180)
+        c, m = math.dist(places[i], near), math.dist(map_places[j], far)
+        table[i][j] = (0.0 if labels[i] == map_labels[j] else 100.0) + (0.0 if math.isnan(turn) else turn / 360)
+        table[i][j] += abs(saturations[i] - map_saturations[j]) / 100 + abs(c - m) / max(m, 0.1)
     return table
 
 
@@ -81,17 +69,6 @@ def penalties_by_phases(labels, places, hues, saturations, map_labels, map_place
     c, m = (np.hypot(*(p - p.mean(axis=0)).T) for p in (places, map_places))
     table = turn / 360 + np.abs(saturations[:, None] - map_saturations) / 100
     return table + np.abs(c[:, None] - m) / np.clip(m, 0.1, None) + np.where(labels[:, None] == map_labels, 0, 100)
-
-
-def greedy_by_sorting(cost):
-    order = sorted((c, i, j) for i, row in enumerate(cost.tolist()) for j, c in enumerate(row))
-    found, rows, columns = [-1] * len(cost), set(), set()
-    for c, i, j in order:
-        if i not in rows and j not in columns:
-            rows.add(i)
-            columns.add(j)
-            found[i] = j if c < 100 else -1
-    return found
 
 
 def greedy_that_stops_at_100(cost):
@@ -113,7 +90,7 @@ def fit_by_complex_numbers(places, landmarks):
 
 
 def fit_by_svd(places, landmarks):
-    if len(places) < 2 or np.ptp(places, axis=0).max() < 1e-3 or np.ptp(landmarks, axis=0).max() < 1e-3:
+    if np.isnan(fit_by_complex_numbers(places, landmarks)[0]):
         return np.full(3, np.nan)
     a, b = places - places.mean(axis=0), landmarks - landmarks.mean(axis=0)
     u, _, vt = np.linalg.svd(b.T @ a)
@@ -121,18 +98,13 @@ def fit_by_svd(places, landmarks):
     return np.array([*(landmarks.mean(axis=0) - r @ places.mean(axis=0)), np.arctan2(r[1, 0], r[0, 0])])
 
 
+# fmt: off
 RIGHT = [
-    ("P2.1", angles_by_direction),
-    ("P2.1", angles_of_a_wrapped_column),
-    ("P2.1", lambda box, width: np.array(angles_of_a_wrapped_column(box, width), dtype=np.float32)),
-    ("P2.2", pairs_from_a_sorted_list),
-    ("P2.2", pairs_as_floats),
-    ("P2.3", places_by_loop),
-    ("P2.3", places_by_complex_numbers),
-    ("P2.4", penalties_by_loops),
-    ("P2.4", penalties_by_phases),
-    ("P2.5", greedy_by_sorting),
-    ("P2.5", greedy_that_stops_at_100),
-    ("P2.6", fit_by_complex_numbers),
-    ("P2.6", fit_by_svd),
+    ("P2.1", angles_by_direction), ("P2.1", angles_of_a_wrapped_column),
+    ("P2.1", lambda *given: np.array(angles_of_a_wrapped_column(*given), np.float32)),
+    ("P2.2", pairs_by_sorting), ("P2.2", lambda *given: np.array(pairs_by_sorting(*given), np.float32)),
+    ("P2.3", places_by_loop), ("P2.3", places_by_complex_numbers),
+    ("P2.4", penalties_by_loops), ("P2.4", penalties_by_phases),
+    ("P2.5", greedy_by_sorting), ("P2.5", greedy_that_stops_at_100),
+    ("P2.6", fit_by_complex_numbers), ("P2.6", fit_by_svd),
 ]

@@ -1,6 +1,7 @@
 """Right answers to project 3 by other ways than its solutions."""
 
 import cmath
+import itertools
 import math
 
 import numpy as np
@@ -8,26 +9,21 @@ from scipy.optimize import linear_sum_assignment, minimize
 
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo import fit_rigid_2d
+from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d as turn
 
 PI = math.pi
 
 
 def distances_by_loops(pose, places, covariances, landmarks):
-    c, s = math.cos(pose[2]), math.sin(pose[2])
-    r = np.array([[c, -s], [s, c]])
-    table = np.empty((len(places), len(landmarks)))
-    for i, (z, spread) in enumerate(zip(places, covariances, strict=True)):
-        total = r @ spread @ r.T + np.diag([0.0004, 0.0004])
-        for j, m in enumerate(landmarks):
-            off = r @ z + pose[:2] - m
-            table[i, j] = off @ np.linalg.solve(total, off)
+    r, table = turn(pose[2]), np.empty((len(places), len(landmarks)))
+    for i, j in np.ndindex(table.shape):
+        off = r @ places[i] + pose[:2] - landmarks[j]
+        table[i, j] = off @ np.linalg.solve(r @ covariances[i] @ r.T + np.diag([0.0004, 0.0004]), off)
     return table
 
 
 def distances_in_the_body_frame(pose, places, covariances, landmarks):
-    c, s = math.cos(pose[2]), math.sin(pose[2])
-    back = (landmarks - pose[:2]) @ np.array([[c, -s], [s, c]])
-    off = places[:, None] - back[None]
+    off = places[:, None] - (landmarks - pose[:2]) @ turn(pose[2])
     weights = np.linalg.inv(covariances + 0.0004 * np.eye(2))
     return ((off[:, :, None, :] @ weights[:, None])[:, :, 0] * off).sum(axis=-1)
 
@@ -35,68 +31,58 @@ def distances_in_the_body_frame(pose, places, covariances, landmarks):
 def poses_by_loops(places, labels, landmarks, map_labels, tolerance):
     """Every ordered choice, in another order than the library's, as a list."""
     found = []
-    for j in range(len(landmarks)):
-        for m in range(len(landmarks)):
-            for k in range(len(places)):
-                for i in range(k):
-                    seen, true = complex(*(places[k] - places[i])), complex(*(landmarks[m] - landmarks[j]))
-                    if j == m or labels[i] != map_labels[j] or labels[k] != map_labels[m]:
-                        continue
-                    if abs(abs(seen) - abs(true)) > tolerance or abs(seen) < 0.5 or abs(true) < 0.5:
-                        continue
-                    turn = (true / seen) / abs(true / seen)
-                    t = complex(*(landmarks[j] + landmarks[m])) / 2 - turn * complex(*(places[i] + places[k])) / 2
-                    found.append([t.real, t.imag, cmath.phase(turn)])
+    for j, m, k, i in np.ndindex(len(landmarks), len(landmarks), len(places), len(places)):
+        seen, true = complex(*(places[k] - places[i])), complex(*(landmarks[m] - landmarks[j]))
+        if i >= k or j == m or labels[i] != map_labels[j] or labels[k] != map_labels[m]:
+            continue
+        if abs(abs(seen) - abs(true)) <= tolerance and abs(seen) >= 0.5 and abs(true) >= 0.5:
+            turned = cmath.phase(true / seen)
+            middle = complex(*(places[i] + places[k])) / 2 * cmath.exp(1j * turned)
+            t = complex(*(landmarks[j] + landmarks[m])) / 2 - middle
+            found.append([t.real, t.imag, turned])
     return found
 
 
 def poses_from_the_fit(places, labels, landmarks, map_labels, tolerance):
     """Two pairs and the least-squares fit of lesson 16: middle on middle by itself."""
-    found = []
-    matches = [(i, j) for i in range(len(places)) for j in range(len(landmarks)) if labels[i] == map_labels[j]]
-    for n, (i, j) in enumerate(matches):
-        for k, m in matches[n + 1 :]:
-            lengths = math.dist(places[i], places[k]), math.dist(landmarks[j], landmarks[m])
-            if i != k and j != m and abs(lengths[0] - lengths[1]) <= tolerance and min(lengths) >= 0.5:
-                found.append(fit_rigid_2d(places[[i, k]], landmarks[[j, m]]))
-    return np.array(found, dtype=np.float32).reshape(-1, 3).astype(float) if not found else np.array(found)
+    matches, found = [ij for ij in np.ndindex(len(places), len(landmarks)) if labels[ij[0]] == map_labels[ij[1]]], []
+    for (i, j), (k, m) in itertools.combinations(matches, 2):
+        lengths = math.dist(places[i], places[k]), math.dist(landmarks[j], landmarks[m])
+        if i != k and j != m and abs(lengths[0] - lengths[1]) <= tolerance and min(lengths) >= 0.5:
+            found.append(fit_rigid_2d(places[[i, k]], landmarks[[j, m]]))
+    return np.array(found).reshape(-1, 3)
 
 
 def assigned_with_dummies(squared, like, reward):
     """A dummy landmark for every observation, which costs nothing."""
     n, m = squared.shape
-    cost = np.where(like, squared / 2 - reward, 1e6)
-    cost = np.hstack([cost, np.zeros((n, n))])
-    _, columns = linear_sum_assignment(cost)
+    cost = np.hstack([np.where(like, squared / 2 - reward, 1e6), np.zeros((n, n))])
+    columns = linear_sum_assignment(cost)[1]
     return [int(j) if j < m else -1 for j in columns], -cost[np.arange(n), columns].sum()
 
 
 def assigned_by_trying(squared, like, reward):
     """All ways, one observation after the other: slow, and right."""
-    best = (0.0, [-1] * len(squared))
 
-    def go(i, taken, score, found):
-        nonlocal best
+    def best(i, taken):
         if i == len(squared):
-            if score > best[0] + 1e-12:
-                best = (score, found)
-            return
-        go(i + 1, taken, score, [*found, -1])
-        for j in range(squared.shape[1]):
-            gain = reward - squared[i, j] / 2
+            return [], 0.0
+        ways = [([-1, *(rest := best(i + 1, taken))[0]], rest[1])]
+        for j, gain in enumerate(reward - squared[i] / 2):
             if like[i, j] and j not in taken and gain > 0:
-                go(i + 1, taken | {j}, score + gain, [*found, j])
+                rest = best(i + 1, taken | {j})
+                ways.append(([j, *rest[0]], rest[1] + gain))
+        return max(ways, key=lambda way: way[1])
 
-    go(0, frozenset(), 0.0, [])
-    return np.array(best[1]), best[0]
+    landmark, score = best(0, frozenset())
+    return np.array(landmark), score
 
 
 def refit_by_nelder_and_mead(start, places, covariances, targets):
     weights = np.linalg.inv(covariances)
 
     def cost(pose):
-        c, s = math.cos(pose[2]), math.sin(pose[2])
-        off = places - (targets - pose[:2]) @ np.array([[c, -s], [s, c]])
+        off = places - (targets - pose[:2]) @ turn(pose[2])
         return np.einsum("ni,nij,nj->", off, weights, off)
 
     options = {"xatol": 1e-9, "fatol": 1e-12, "maxiter": 4000, "maxfev": 4000}
@@ -108,11 +94,9 @@ def refit_by_gauss_and_newton(start, places, covariances, targets):
     """Steps in the body frame, where the weights stand still; the derivative by hand."""
     pose, weights = np.array(start), np.linalg.inv(covariances)
     for _ in range(40):
-        c, s = math.cos(pose[2]), math.sin(pose[2])
-        back = (targets - pose[:2]) @ np.array([[c, -s], [s, c]])
+        back = (targets - pose[:2]) @ turn(pose[2])
         slope = np.zeros((len(places), 2, 3))
-        slope[:, :, 0], slope[:, :, 1] = [c, -s], [s, c]
-        slope[:, :, 2] = -np.column_stack([back[:, 1], -back[:, 0]])
+        slope[:, :, :2], slope[:, 0, 2], slope[:, 1, 2] = turn(-pose[2]), -back[:, 1], back[:, 0]
         normal = np.einsum("nki,nkl,nlj->ij", slope, weights, slope)
         pose = pose - np.linalg.solve(normal, np.einsum("nki,nkl,nl->i", slope, weights, places - back))
     return np.array([pose[0], pose[1], wrap_angle(pose[2])], dtype=np.float32)
@@ -121,8 +105,7 @@ def refit_by_gauss_and_newton(start, places, covariances, targets):
 def sure_by_loop(poses, scores, nothing):
     if len(scores) == 0:
         return 0
-    best = max(range(len(scores)), key=lambda k: scores[k])
-    second = -math.inf
+    best, second = max(range(len(scores)), key=lambda k: scores[k]), -math.inf
     for pose, score in zip(poses, scores, strict=True):
         turned = abs(cmath.phase(cmath.exp(1j * (pose[2] - poses[best][2]))))
         if math.dist(pose[:2], poses[best][:2]) > 0.5 or turned > math.radians(10):
@@ -142,15 +125,11 @@ def sure_by_softmax(poses, scores, nothing):
     return np.array([share[0] / share.sum()])
 
 
+# fmt: off
 RIGHT = [
-    ("P3.1", distances_by_loops),
-    ("P3.1", distances_in_the_body_frame),
-    ("P3.2", poses_by_loops),
-    ("P3.2", poses_from_the_fit),
-    ("P3.3", assigned_with_dummies),
-    ("P3.3", assigned_by_trying),
-    ("P3.4", refit_by_nelder_and_mead),
-    ("P3.4", refit_by_gauss_and_newton),
-    ("P3.5", sure_by_loop),
-    ("P3.5", sure_by_softmax),
+    ("P3.1", distances_by_loops), ("P3.1", distances_in_the_body_frame),
+    ("P3.2", poses_by_loops), ("P3.2", poses_from_the_fit),
+    ("P3.3", assigned_with_dummies), ("P3.3", assigned_by_trying),
+    ("P3.4", refit_by_nelder_and_mead), ("P3.4", refit_by_gauss_and_newton),
+    ("P3.5", sure_by_loop), ("P3.5", sure_by_softmax),
 ]
