@@ -4,7 +4,6 @@ What was judged lies in OUT/judged/, a file for each submission, named by a dige
 limits. So a run that was ended goes on, and a second one looks only at what changed.
 """
 
-import contextlib
 import csv
 import hashlib
 import json
@@ -23,7 +22,7 @@ from course_lib.classroom.model_answers import function_name
 from course_lib.classroom.points import BY_HAND, most_of
 from course_lib.classroom.sandbox import Limits, library_copy, require_walls
 from course_lib.classroom.self_test import self_test
-from course_lib.classroom.submissions import NotRead, Roster, Submission, collect, plain, shown
+from course_lib.classroom.submissions import NotRead, Roster, Submission, collect, shown
 from course_lib.files import atomic_write, temporary_folder
 from course_lib.lessons.kit.projects import project_names
 
@@ -109,7 +108,7 @@ class Results:
             tries = sorted(one.judged.tries[number] for one in entries if number in one.judged.tries)
             rows.append({
                 "number": number, "most": most_of(number), "mean": sum(a.points for a in answers) / len(answers),
-                **{key: 0 for key in KEYS}, **Counter(a.status.replace(" ", "_") for a in answers), "answers": len(answers),
+                **dict.fromkeys(KEYS, 0), **Counter(a.status.replace(" ", "_") for a in answers), "answers": len(answers),
                 "hint": hints[0] if hints else None, "tries": tries[len(tries) // 2] if tries else None,
             })  # fmt: skip
         return rows

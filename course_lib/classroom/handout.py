@@ -21,7 +21,6 @@ import zipfile
 from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
-from string import Template
 
 from course_lib.classroom.assignment_cells import Assignment, tag_of
 from course_lib.classroom.leaks import LeakError, find_leaks, solutions, teachers_words
@@ -29,6 +28,7 @@ from course_lib.classroom.model_answers import model_solution_path
 from course_lib.classroom.nbgrader_course import write_course
 from course_lib.classroom.rubric import rubric
 from course_lib.classroom.student_copies import solved_notebook, write_copies
+from course_lib.classroom.templates import template
 from course_lib.files import staging_dir, temporary_folder
 from course_lib.paths import REPOSITORY
 
@@ -110,10 +110,9 @@ def imports_of(assignment: Assignment) -> str:
 def write_readmes(made: Path, assignments: list[Assignment], seed: int) -> None:
     """Write a page for every folder, the secret seed, and the mark by which the folder is known as ours."""
     names, canary = [assignment.name for assignment in assignments], canary_of(seed)
-    for folder, template in READMES.items():
-        text = Template((Path(__file__).parent / "templates" / template).read_text(encoding="utf-8"))
+    for folder, name in READMES.items():
         path = made / folder / ("HANDOUT.md" if folder == "student" else "README.md")
-        path.write_text(text.substitute(names=", ".join(names), canary=canary), encoding="utf-8")
+        path.write_text(template(name).render(names=", ".join(names), canary=canary), encoding="utf-8")
     (made / "teacher" / "grading").mkdir()
     write_json(made / "teacher" / "grading" / "seed.json", {"seed": seed, "canary": canary})
     write_json(made / MARKER, {"made_by": MADE_BY, "version": 2, "lessons": names})

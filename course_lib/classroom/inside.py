@@ -23,11 +23,11 @@ from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
 from course_lib.classroom.answers import encode
-from course_lib.classroom.statements import Statement, needed, read_statements
 from course_lib.lessons.kit.attempt import attempt
 from course_lib.lessons.kit.exercises import MAX_SHOWN, is_stub, same_values
 from course_lib.lessons.kit.forbidden import forbidden_module
 from course_lib.lessons.kit.hints import kind_of
+from course_lib.lessons.kit.statements import Statement, needed, read_statements
 
 MAX_FILE = 20 << 20  # bytes; a lesson with all its pictures has 0.4 MB
 MAX_SENTENCE = 500  # characters

@@ -6,13 +6,12 @@ teacher's remarks hold all of it.
 """
 
 import contextlib
-import copy
 import dataclasses
+import pickle
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-import cloudpickle
 import numpy as np
 
 from course_lib.classroom.answers import AnswerFormatError, decode, one_line
@@ -65,7 +64,7 @@ def judge(
     path: Path, stubs: dict[str, str], seed: int, library: Path, limits: Limits, guess: str = "", trust: bool = False,
     scores: bool = False,
 ) -> Judged:  # fmt: skip
-    """Judge one file. stubs: the function's name of every exercise and project. guess: the lesson by the file's name."""
+    """Judge one file. stubs: the function's name of every exercise and project. guess: the lesson that its name says."""
     try:
         with Sandbox(path, library, limits, trust) as box:
             if "unreadable" in box.opened:
@@ -121,7 +120,7 @@ def lessons_of(held: list[str], functions: list[str], stubs: dict[str, str], gue
 def judge_answer(exercise: Exercise, function: str, box: Sandbox, seed: int) -> Graded:
     """Run and judge one answer."""
     arguments = exercise.draw(np.random.default_rng(secret(seed, exercise.number)))
-    run = box.run(exercise.number, function, pickled(exercise, arguments))
+    run = box.run(exercise.number, function, pickle.dumps(arguments))
     most, none = most_of(exercise.number), run.head.get("none")
     remarks = [one_line(text) for text in run.head.get("problems", [])][:20]
     if none == "stub" or (none == "missing" and not remarks):
@@ -140,18 +139,6 @@ def judge_answer(exercise: Exercise, function: str, box: Sandbox, seed: int) -> 
     printed = one_line(run.calls[0].get("printed", "")) if run.calls else ""
     remarks = [] if all(right) else [*remarks, *details]
     return Graded(exercise.number, status, points, most, sentence, sum(right), len(right), remarks, printed)
-
-
-def pickled(exercise: Exercise, arguments: list[tuple]) -> bytes:
-    """Return the arguments as a pickle; classes and functions beside the solution travel alone, by their value."""
-    import sys
-
-    module = sys.modules[exercise.solution.__module__]
-    cloudpickle.register_pickle_by_value(module)
-    try:
-        return cloudpickle.dumps(copy.deepcopy(arguments))
-    finally:
-        cloudpickle.unregister_pickle_by_value(module)
 
 
 def _answers(run: Run, wanted: int) -> tuple[list, list[str], list[str]]:
@@ -253,7 +240,7 @@ def _outcome(project: Project, box: Sandbox, world: int) -> Outcome:
         return Outcome(project.worst, remark, True, last)
 
     def call(calls: list[tuple]) -> list:
-        run = box.run(project.name, project.function, cloudpickle.dumps(calls), project.forbidden)
+        run = box.run(project.name, project.function, pickle.dumps(calls), project.forbidden)
         if run.head.get("none") is not None:
             raise LookupError("Not attempted.")
         if run.head.get("forbidden"):

@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 from course_lib.classroom.assignment_cells import Assignment, AssignmentError
-from course_lib.classroom.statements import needed, read_statements
+from course_lib.lessons.kit.statements import needed, read_statements
 from course_lib.paths import REPOSITORY
 
 

@@ -1,6 +1,6 @@
 """A course for nbgrader: source notebooks, and a configuration in which the judge gives the points.
 
-`source/06/06.ipynb`: every stub is followed by the model answer between nbgrader's comments, which a release leaves out;
+`source/06/06.ipynb`: every stub is followed by the model answer between nbgrader's comments, which a release omits;
 the check stays as it is, visible and not graded; after it comes a locked cell with the points. When nbgrader grades, no
 cell runs: `Judge` hands the notebook to the same judge as `course.py grade`, and writes its points into these cells.
 """

@@ -6,11 +6,10 @@ import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-import jinja2
-
 from course_lib.classroom.grading import Entry, Results
 from course_lib.classroom.judge import failure_kind
 from course_lib.classroom.points import BY_HAND
+from course_lib.classroom.templates import template
 from course_lib.files import atomic_write
 from course_lib.lessons.kit.projects import project_names
 
@@ -19,10 +18,6 @@ MARKS = {"right": "\u2713", "partly right": "\u00bd", "wrong": "\u2717", "not at
 FORMULA = re.compile(r"^[\s\u200b\ufeff]*[=+\-@\uff1d\ufe66\uff0b\uff0d\uff20\t\r]")
 """A spreadsheet takes a cell that begins so for a formula; some take full-width signs too."""
 PLACE = re.compile(r"((?:cell \d+|the file), line \d+) (.*)")
-PAGES = jinja2.Environment(
-    loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"), autoescape=True, trim_blocks=True,
-    lstrip_blocks=True, undefined=jinja2.StrictUndefined,
-)  # fmt: skip
 
 
 def places(entry: Entry) -> list[str]:
@@ -34,7 +29,7 @@ def places(entry: Entry) -> list[str]:
 def write_results(results: Results, out: Path) -> list[str]:
     """Write all pages and tables into a folder and return their names."""
     values = {"results": results, "marks": MARKS, "projects": project_names(), "by_hand": BY_HAND, "places": places}
-    atomic_write(out / "grades.html", PAGES.get_template("grades.html").render(values))
+    atomic_write(out / "grades.html", template("grades.html").render(values))
     tables = {"totals.csv": totals(results), "answers.csv": answers(results)}
     for name, rows in tables.items():
         atomic_write(out / name, written(rows))
@@ -42,7 +37,7 @@ def write_results(results: Results, out: Path) -> list[str]:
     taken: dict[str, str] = {}
     for student in results.students:
         name = feedback_name(student, taken)
-        page = PAGES.get_template("feedback.html").render(values | {"student": student})
+        page = template("feedback.html").render(values | {"student": student})
         atomic_write(out / "feedback" / name, page)
     return ["grades.html", *tables, "feedback/"]
 

@@ -27,7 +27,7 @@ from course_lib.paths import REPOSITORY
 KEPT_BACK = ("exercises.py", "project.py", "rivals.py")
 """Modules of a lesson or project with solutions, hidden seeds or rivals."""
 TEACHERS = ("classroom", "commands")
-IN_CLASSROOM = ("__init__.py", "answers.py", "statements.py", "inside.py")
+IN_CLASSROOM = ("__init__.py", "answers.py", "inside.py")
 """What the process in the sandbox needs of this folder."""
 HIDDEN_DATA = ("rooms_hidden.json",)
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/etc/ld.so.cache", "/etc/fonts", "/etc/localtime")
@@ -64,7 +64,7 @@ class Limits(NamedTuple):
 
 
 class Run(NamedTuple):
-    """The outcome of one answer. calls: messages of `inside.answer`. ended: why it did not end, after "Your function"."""
+    """The outcome of one answer. calls: messages of `inside.answer`. ended: why it stopped, after "Your function"."""
 
     head: dict
     calls: list[dict]

@@ -102,7 +102,8 @@ def _outside() -> Iterator[dict]:
             stack.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)).bind(name)
         try:
             yield {
-                "secret": folder / "secret", "port": listening.getsockname()[1], "folder": folder, "pid": process.pid, "key": key,
+                "secret": folder / "secret", "port": listening.getsockname()[1], "folder": folder,
+                "pid": process.pid, "key": key,
                 "abstract": f"course-{os.getpid()}",
             }  # fmt: skip
         finally:

@@ -100,7 +100,7 @@ def write_copies(folder: Path, assignments: list[Assignment], make: Callable = s
 
 
 def within(places: set[PurePosixPath], page: PurePosixPath) -> Resolve:
-    """Return for links from `page`: the link where a file of the folder is meant, pictures and scenes too; else None."""
+    """Return the `Resolve` for links from `page`: the link if it leads to a file of the folder, else None."""
 
     def resolve(target: str) -> str | None:
         parts: list[str] = list(page.parent.parts)

@@ -141,7 +141,7 @@ def _without_lesson(stem: str, lessons: dict[str, str]) -> str:
 
 
 def plain(name: str) -> str:
-    """Return a name in one form for comparison: case, accents' encoding, punctuation and order of words do not count."""
+    """Return a name in one form for comparison: case, encoding, punctuation and order of words do not count."""
     words = re.findall(r"[^\W_]+", unicodedata.normalize("NFKC", name).casefold())
     return " ".join(sorted(words))
 

@@ -89,7 +89,7 @@ def test_a_class_of_ones_own_is_the_number_or_row_that_it_is_underneath():
 @pytest.mark.parametrize(
     "written",
     [
-        {}, {"tuple": 3}, {"tuple": {}, "list": 1}, {"pickle": "gASVAA=="}, {"array": "", "scalar": False}, {"array": 3},
+        {}, {"tuple": 3}, {"tuple": {}, "list": 1}, {"pickle": "gASVAA=="}, {"array": ""}, {"array": 3},
         {"array": "!", "scalar": False}, {"array": array("{'descr': '|O', 'fortran_order': False, 'shape': (1,)}")},
         {"array": array("{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000000,)}")},
         {"array": array("{'descr': '<f8', 'fortran_order': False, 'shape': (-1,)}")},

@@ -82,7 +82,7 @@ def test_a_students_page_holds_no_input_and_nothing_of_the_others(graded):
 
 
 def test_points_by_hand_are_asked_for_and_added(graded, library):
-    results, folder, out = graded
+    _, folder, out = graded
     rows = (out / "by_hand.csv").read_text(encoding="utf-8-sig")
     assert rows.splitlines()[1] == "alice,P1,,"
     (out / "by_hand.csv").write_text(rows.replace("alice,P1,,", "alice,P1,7.5,good"), encoding="utf-8")
@@ -102,7 +102,7 @@ def test_what_was_judged_is_not_judged_again(graded, library, monkeypatch):
 
 
 def test_a_run_that_was_ended_goes_on(graded, library, monkeypatch):
-    results, folder, out = graded
+    _, folder, out = graded
     lost = sorted((out / "judged").glob("*.json"))[0]
     kept = json.loads(lost.read_text(encoding="utf-8"))
     lost.unlink()

@@ -92,7 +92,8 @@ def test_the_lesson_is_known_by_its_cells_else_by_its_functions(judged, library,
 
 @pytest.mark.parametrize(("content", "why"), [
     (b"", "not a notebook"), (b"{}", "not a notebook"), (b'{"cells": 3}', "not a notebook"), (b"\xff\xfe", "UTF-8"),
-    (b"[" * 100_000, "not a notebook"), (b'{"cells": [{"cell_type": "code", "source": 3, "metadata": []}]}', "not a notebook"),
+    (b"[" * 100_000, "not a notebook"),
+    (b'{"cells": [{"cell_type": "code", "source": 3, "metadata": []}]}', "not a notebook"),
 ])  # fmt: skip
 def test_a_damaged_file_is_told_in_a_sentence(library, tmp_path, content, why):
     (tmp_path / "06.ipynb").write_bytes(content)
@@ -132,10 +133,8 @@ def test_a_projects_last_function_runs_in_the_worlds_of_the_seed(library, tmp_pa
     withheld = judge(path, STUBS, 5, library, Limits(), scores=True).answers[-1]
     assert (withheld.number, withheld.right_inputs, withheld.inputs) == ("P3", 12, 12), withheld
     assert withheld.points > 0
-    path.write_text(
-        "from course_lib.spherical_stereo import associate_greedy\n\ndef match(a, b):\n    return associate_greedy(a, b)\n",
-        encoding="utf-8",
-    )
+    ban = "from course_lib.spherical_stereo.semantic_map.association import associate_greedy as match\n"
+    path.write_text(ban, encoding="utf-8")
     banned = judge(path, STUBS, 5, library, Limits(), scores=True).answers[-1]
     assert banned.points == 0
     assert "Not scored: it uses course_lib.spherical_stereo" in banned.remarks[0]

@@ -104,7 +104,13 @@ TOO_MUCH = {
                 except OSError: pass
         return hidden
         """,
-    "a line without end": "import os\nfor k in range(3, 9):\n    try:\n        for _ in range(200): os.write(k, b'x' * (1 << 20))\n    except OSError: pass",
+    "a line without end": """
+        import os
+        for k in range(3, 9):
+            try:
+                for _ in range(200): os.write(k, b'x' * (1 << 20))
+            except OSError: pass
+        """,
 }
 
 
@@ -161,7 +167,7 @@ def test_the_students_sentence_carries_no_input_out(graded):
 def test_an_answer_finds_no_reference_seed_or_other_student(graded):
     found = graded(f"""
         import gc, sys
-        names = [n for n in sys.modules if n.endswith((".exercises", ".project", ".rivals", ".judge")) and ".kit." not in n]
+        names = [n for n in sys.modules if n.endswith((".exercises", ".project", ".judge")) and ".kit." not in n]
         texts = [one for one in gc.get_objects() if isinstance(one, dict) and "images_with_holes" in one]
         return None if names or texts else {SCORE}
         """)
