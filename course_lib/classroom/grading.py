@@ -108,7 +108,7 @@ class Results:
             tries = sorted(one.judged.tries[number] for one in entries if number in one.judged.tries)
             rows.append({
                 "number": number, "most": most_of(number), "mean": sum(a.points for a in answers) / len(answers),
-                **dict.fromkeys(KEYS, 0), **Counter(a.status.replace(" ", "_") for a in answers), "answers": len(answers),
+                **dict.fromkeys(KEYS, 0), **Counter(a.status.replace(" ", "_") for a in answers),
                 "hint": hints[0] if hints else None, "tries": tries[len(tries) // 2] if tries else None,
             })  # fmt: skip
         return rows

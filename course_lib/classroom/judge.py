@@ -64,7 +64,7 @@ def judge(
     path: Path, stubs: dict[str, str], seed: int, library: Path, limits: Limits, guess: str = "", trust: bool = False,
     scores: bool = False,
 ) -> Judged:  # fmt: skip
-    """Judge one file. stubs: the function's name of every exercise and project. guess: the lesson that its name says."""
+    """Judge one file. stubs: the function of every exercise and project. guess: the lesson that its name says."""
     try:
         with Sandbox(path, library, limits, trust) as box:
             if "unreadable" in box.opened:

@@ -1,14 +1,9 @@
-"""What of the teacher's is looked for in whatever students get: the canary, the secret seed, every solution.
-
-Spaces and line ends do not count, nor does how a page colours code: notebooks are read as their texts, pages without
-their tags.
-"""
+"""What of the teacher's is looked for in whatever students get: the canary, the secret seed, every solution."""
 
 import ast
 import html
 import json
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 from course_lib.classroom.assignment_cells import Assignment, tag_of
@@ -60,26 +55,16 @@ def find_leaks(folder: Path, words: dict[str, str]) -> list[str]:
 
 
 def text_of(path: Path) -> str:
-    """Return all words of a file, without spaces."""
+    """Return all words of a file: of a notebook the texts in its JSON, of a page those without tags."""
     raw = path.read_bytes().decode("utf-8", errors="replace")
-    if path.suffix == ".ipynb":
-        return "\n".join(plain(text) for text in _strings(json.loads(raw)))
-    if path.suffix == ".html":
-        return plain(html.unescape(re.sub(r"<[^>]*>", "", raw)))
+    if path.suffix == ".ipynb":  # a list of lines is one text
+        raw = re.sub(r'\\n",\s*"', r"\\n", raw)
+        raw = "\n".join(json.loads(text) for text in re.findall(r'"(?:[^"\\]|\\.)*+"', raw))
+    elif path.suffix == ".html":
+        raw = html.unescape(re.sub(r"<[^>]*>", "", raw))
     return plain(raw)
 
 
 def plain(text: str) -> str:
     """Return text without spaces and line ends; a comment of code keeps its words."""
     return re.sub(r"[\s#]+", "", text)
-
-
-def _strings(value: object) -> Iterator[str]:
-    """Yield the texts of a notebook; a list of lines is one text."""
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, list) and all(isinstance(part, str) for part in value):
-        yield "".join(value)
-    elif isinstance(value, list | dict):
-        for part in value.values() if isinstance(value, dict) else value:
-            yield from _strings(part)

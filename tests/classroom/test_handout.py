@@ -12,6 +12,7 @@ from course_lib.classroom import handout
 from course_lib.classroom.assignment_cells import read_assignments
 from course_lib.classroom.handout import MARKER, HandoutError, canary_of, make_handout
 from course_lib.classroom.leaks import LeakError, find_leaks, teachers_words
+from course_lib.lessons.kit.exercises import find_exercise
 
 SEED = 31_415_926_535
 TWO = read_assignments(["06", "P2"])
@@ -82,7 +83,7 @@ def test_the_rubric_has_every_exercise_with_its_points_and_mistakes(made):
         ("06.3", "core", "4"),
         ("06.4", "challenge", "6"),
     ]
-    assert "* Your alpha is always 0.1 m: use the argument." in page
+    assert f"* {find_exercise('06.1').known[0].hint}\n" in page
     assert page.count("**To talk about.** ") == 4
     project = (made / "teacher" / "rubric" / "P2.md").read_text(encoding="utf-8")
     assert "## P2, the score · 12 points" in project
