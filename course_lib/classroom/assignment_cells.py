@@ -65,7 +65,7 @@ class Assignment(NamedTuple):
 
 
 def tag_of(cell: nbformat.NotebookNode) -> str:
-    """Return what a cell is to its exercise or project: task, exercise (the stub), check, hint, solution, ...; or ""."""
+    """Return what a cell is to its exercise: task, exercise (the stub), check, hint, solution, ...; or ""."""
     return next(iter(cell.metadata.get("tags", [])), "")
 
 

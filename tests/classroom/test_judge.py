@@ -3,14 +3,13 @@
 import json
 
 import nbformat
-import numpy as np
 import pytest
 
 from course_lib.classroom.grading import function_names
 from course_lib.classroom.judge import as_json, from_json, judge, lessons_of
-from course_lib.classroom.points import earned, most_of, points_of, secret
+from course_lib.classroom.points import earned
 from course_lib.classroom.sandbox import Limits
-from course_lib.lessons.kit.exercises import Exercise, find_exercise, right_on
+from course_lib.lessons.kit.exercises import find_exercise
 from tests.classroom.handed_in import assignment_of, handed_in, mistaken, solved
 
 STUBS = function_names()
@@ -138,31 +137,3 @@ def test_a_projects_last_function_runs_in_the_worlds_of_the_seed(library, tmp_pa
     banned = judge(path, STUBS, 5, library, Limits(), scores=True).answers[-1]
     assert banned.points == 0
     assert "Not scored: it uses course_lib.spherical_stereo" in banned.remarks[0]
-
-
-# Points
-
-
-@pytest.mark.parametrize(
-    ("level", "right", "points"),
-    [
-        ("warm-up", [True] * 4, 2), ("core", [True] * 4, 4), ("challenge", [True] * 4, 6),
-        ("challenge", [True, True, False, False], 3), ("challenge", [True, False, False, False], 0),
-        ("core", [False] * 4, 0), ("core", [True] * 25 + [False], 2),
-    ],
-)  # fmt: skip
-def test_all_right_earns_all_half_right_earns_half(level, right, points):
-    exercise = Exercise("99.1", abs, lambda rng: (1.0,), level)
-    assert earned(exercise, right) == points
-    assert points_of(exercise) == {"warm-up": 2, "core": 4, "challenge": 6}[level]
-    assert most_of("P1") == 12
-    assert secret(3, "06.1") == secret(3, "06.1") != secret(3, "06.2")
-
-
-def test_right_inputs_are_counted_by_the_function_that_fits_best():
-    either = Exercise("99.2", np.median, lambda rng: (rng.normal(size=9),), others=(np.mean,))
-    arguments = either.draw(np.random.default_rng(1))
-    answers = [np.mean(*given) for given in arguments]
-    assert right_on(either, arguments, answers) == [True] * len(arguments)
-    mixed = [np.median(*given) if i % 2 else np.mean(*given) for i, given in enumerate(arguments)]
-    assert sum(right_on(either, arguments, mixed)) <= (len(arguments) + 1) / 2
