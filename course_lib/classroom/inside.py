@@ -62,7 +62,14 @@ def main(path: str, call_seconds: float, seconds: float) -> None:
     functions = {one.node.name: one.node for one in statements if isinstance(one.node, ast.FunctionDef)}
     shapes = {name: shape for name, node in functions.items() if (shape := digest(node))}
     send(
-        results, held._asdict() | {"cells": None, "functions": list(functions), "shapes": shapes, "problems": problems}
+        results,
+        held._asdict()
+        | {
+            "cells": None,
+            "functions": sorted({name for one in statements for name in one.binds}),
+            "shapes": shapes,
+            "problems": problems,
+        },
     )
     prepare(statements)
     while size := orders.read(8):
@@ -166,7 +173,10 @@ def answer(
         kind = "stub" if callable(found) else "missing" if found is None else kind_of(found)
         send(results, head | {"none": kind})
         return
-    send(results, head | {"forbidden": forbidden_module(found, forbidden) if forbidden else None})
+    banned = forbidden_module(found, forbidden) if forbidden else None
+    send(results, head | {"forbidden": banned})
+    if banned:
+        return
     for index, given in enumerate(pickle.loads(arguments)):
         kept = copy.deepcopy(given)
         call = attempt(found, given, call_seconds)

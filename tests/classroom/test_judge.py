@@ -132,7 +132,7 @@ def test_a_projects_last_function_runs_in_the_worlds_of_the_seed(library, tmp_pa
     withheld = judge(path, STUBS, 5, library, Limits(), scores=True).answers[-1]
     assert (withheld.number, withheld.right_inputs, withheld.inputs) == ("P3", 12, 12), withheld
     assert withheld.points > 0
-    ban = "from course_lib.spherical_stereo.semantic_map.association import associate_greedy as match\n"
+    ban = "from course_lib.spherical_stereo.pose.rigid_fit import fit_rigid_2d as match\n"
     path.write_text(ban, encoding="utf-8")
     banned = judge(path, STUBS, 5, library, Limits(), scores=True).answers[-1]
     assert banned.points == 0
