@@ -43,7 +43,7 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
     },
     "teach": {
         "handout": ("handout", "make a class's folder: lessons without solutions, and the teacher's graded tests"),
-        "grade": ("grade", "grade a folder of submissions in a sandbox: points and hints as CSV and as a page"),
+        "grade": ("grade", "grade a folder of submissions within walls: points, feedback pages, CSV tables"),
         "score": ("score", "score a project that was handed in, on its hidden seeds"),
     },
 }

@@ -1,123 +1,81 @@
-"""Answers as text that can be read without running anything: numbers, texts, rows of such, arrays; nothing else.
+"""Answers as JSON: numbers, texts, rows and arrays. Reading them runs nothing, whatever a student's process wrote.
 
-The process that runs a student's function writes them with `encode`; the grader reads them with `decode`, which builds
-plain values of its own whatever is written. What is no such value arrives as an `Unreadable` of the same name, which
-is no number and therefore wrong. Objects, classes and pickles are never sent this way.
+`encode` runs in the student's process, `decode` in the grader's. A value of any other kind arrives as an `Unreadable`,
+which is no number and therefore wrong. Arrays travel in NumPy's own file format, without pickles.
 """
 
 import base64
+import io
 import json
-import math
 
 import numpy as np
 
-LARGEST_ARRAY = 32 << 20
-"""Bytes of one array; right answers hold some kilobytes."""
-LARGEST_ROW = 100_000
-"""Values in one list or tuple."""
-LONGEST_TEXT = 10_000
-DEEPEST = 8
-"""Rows within rows."""
-KINDS = "biufc"
-TYPES = {
-    np.dtype(name).str for name in ("?", "i1", "i2", "i4", "i8", "u1", "u2", "u4", "u8", "f2", "f4", "f8", "c8", "c16")
-}
+MAX_DEPTH = 8  # rows within rows
+MAX_ROW = 100_000  # values in one list or tuple
+MAX_TEXT = 10_000  # characters
+MAX_ARRAY = 32 << 20  # bytes
+KINDS = "biufc"  # of NumPy's types: numbers and booleans
 
 
 class Unreadable:
-    """Stands for an answer that holds no numbers; its class has the name of what was returned."""
+    """Stands for an answer that holds no numbers. Its class has the name of what was returned."""
 
 
 class AnswerFormatError(ValueError):
-    """What was written is no answer in this format."""
+    """The line is not an answer in this format."""
 
 
 def encode(value: object, depth: int = 0) -> object:
-    """A value as what `json.dumps` takes; of a class of the student's own, the number or row that it is underneath."""
-    if value is None or value is ... or type(value) is bool:
-        return {"ellipsis": True} if value is ... else value
-    if isinstance(value, np.ndarray | np.generic | complex):
-        return _encode_array(value)
-    if isinstance(value, float):
-        number = float.__float__(value)
-        return number if math.isfinite(number) else {"float": repr(number)}
+    """Return a value in the form that `json.dumps` takes."""
+    if isinstance(value, float) and not isinstance(value, np.generic):
+        return float.__float__(value)
+    if value is None or type(value) is bool or (type(value) is str and len(value) <= MAX_TEXT):
+        return value
     if isinstance(value, int) and abs(int.__int__(value)) < 1 << 64:
         return int.__int__(value)
-    if type(value) is str and len(value) <= LONGEST_TEXT:
-        return value
-    row = tuple if isinstance(value, tuple) else list if isinstance(value, list) else None
-    if row is not None and row.__len__(value) <= LARGEST_ROW and depth < DEEPEST:
-        return {row.__name__: [encode(part, depth + 1) for part in row.__iter__(value)]}
-    return {"kind": str(type(value).__name__)[:60]}
-
-
-def _encode_array(value: object) -> dict:
-    array = np.asarray(value)
-    if array.dtype.kind not in KINDS:
-        return {"kind": "ndarray of " + str(array.dtype)[:40]}
-    if array.dtype.itemsize > 8 and array.dtype.kind == "f":
-        array = array.astype(np.float64) if array.size * 8 <= LARGEST_ARRAY else array
-    if array.nbytes > LARGEST_ARRAY:  # before a byte is copied: a view may stand for more than there is memory
-        return {"kind": f"{'x'.join(str(side) for side in array.shape)} array, which is too large"}
-    array = array.astype(array.dtype.newbyteorder("="), copy=False)
-    if array.dtype.str not in TYPES:
-        return {"kind": "ndarray of " + str(array.dtype)[:40]}
-    return {
-        "array": base64.b64encode(np.ascontiguousarray(array).tobytes()).decode("ascii"),
-        "type": array.dtype.str,
-        "shape": list(array.shape),
-        "scalar": not isinstance(value, np.ndarray),
-    }
+    if value is ...:
+        return {"ellipsis": True}
+    if isinstance(value, np.ndarray | np.generic | complex):
+        array = np.asarray(value)
+        if array.dtype.kind in KINDS and array.nbytes <= MAX_ARRAY:
+            buffer = io.BytesIO()
+            np.save(buffer, array, allow_pickle=False)
+            return {"array": base64.b64encode(buffer.getvalue()).decode(), "scalar": not isinstance(value, np.ndarray)}
+    for row in (tuple, list):
+        if isinstance(value, row) and depth < MAX_DEPTH and row.__len__(value) <= MAX_ROW:
+            return {row.__name__: [encode(part, depth + 1) for part in row.__iter__(value)]}
+    return {"kind": type(value).__name__[:60]}
 
 
 def decode(written: object, depth: int = 0) -> object:
-    """The value that `encode` wrote. Raises `AnswerFormatError` for anything else, which only a forger writes."""
-    if written is None or type(written) in (bool, float):
+    """Return the value that `encode` wrote. Raises `AnswerFormatError` for anything else."""
+    if written is None or type(written) in (bool, int, float, str):
         return written
-    if (type(written) is int and abs(written) < 1 << 64) or (type(written) is str and len(written) <= LONGEST_TEXT):
-        return written
-    if type(written) is dict and depth <= DEEPEST:
-        if written == {"ellipsis": True}:
-            return ...
-        if written.keys() == {"float"} and written["float"] in ("inf", "-inf", "nan"):
-            return float(written["float"])
+    if type(written) is dict and len(written) <= 2 and depth <= MAX_DEPTH:
         for row in (tuple, list):
-            parts = written.get(row.__name__)
-            if written.keys() == {row.__name__} and type(parts) is list and len(parts) <= LARGEST_ROW:
+            if type(parts := written.get(row.__name__)) is list:
                 return row(decode(part, depth + 1) for part in parts)
-        if written.keys() == {"array", "type", "shape", "scalar"}:
+        if "ellipsis" in written:
+            return ...
+        if "array" in written:
             return _decode_array(written)
-        if written.keys() == {"kind"} and type(written["kind"]) is str:
-            return type(printable(written["kind"])[:60] or "object", (Unreadable,), {})()
-    raise AnswerFormatError("not in the format of answers")
+        if "kind" in written:
+            return type(one_line(written["kind"])[:60] or "object", (Unreadable,), {})()
+    raise AnswerFormatError("what is not in the format of answers")
 
 
 def _decode_array(written: dict) -> object:
-    shape, kind = written["shape"], written["type"]
-    if type(shape) is not list or not all(type(side) is int and side >= 0 for side in shape) or len(shape) > 32:
-        raise AnswerFormatError("an array's shape is not a row of whole numbers")
-    if type(kind) is not str or kind not in TYPES or type(written["array"]) is not str:
+    try:
+        array = np.load(io.BytesIO(base64.b64decode(written["array"], validate=True)), allow_pickle=False)
+    except Exception as error:  # NumPy raises many kinds for a damaged header
+        raise AnswerFormatError("an array that cannot be read") from error
+    if not isinstance(array, np.ndarray) or array.dtype.kind not in KINDS:
         raise AnswerFormatError("an array of an unknown type")
-    try:
-        content = base64.b64decode(written["array"], validate=True)
-    except ValueError as error:
-        raise AnswerFormatError("an array whose content cannot be read") from error
-    if len(content) != math.prod(shape) * np.dtype(kind).itemsize:
-        raise AnswerFormatError("an array whose shape does not fit its content")
-    try:
-        array = np.frombuffer(content, dtype=kind).reshape(shape).copy()
-    except (ValueError, OverflowError) as error:  # no value at all, but a side longer than there are numbers for
-        raise AnswerFormatError("an array's shape is too large") from error
-    return array[()] if written["scalar"] is True and array.ndim == 0 else array
-
-
-def dump(message: dict) -> bytes:
-    """One message as one line."""
-    return json.dumps(message).encode("ascii") + b"\n"
+    return array[()] if written.get("scalar") is True and array.ndim == 0 else array
 
 
 def load(line: bytes) -> dict:
-    """The message in one line. Raises `AnswerFormatError` for what is none."""
+    """Return the message in one line. Raises `AnswerFormatError` if there is none."""
     try:
         message = json.loads(line)
     except (ValueError, RecursionError) as error:
@@ -127,6 +85,6 @@ def load(line: bytes) -> dict:
     return message
 
 
-def printable(text: object) -> str:
-    """One line of text without control characters, for messages and names that a stranger chose."""
-    return "".join(letter if letter.isprintable() else " " for letter in str(text)).strip()
+def one_line(text: object, length: int = 600) -> str:
+    """Return a stranger's text as one line without control characters."""
+    return "".join(letter if letter.isprintable() else " " for letter in str(text)[: 2 * length]).strip()[:length]

@@ -1,213 +1,240 @@
-"""All answers of a folder, on several processors: whatever happens to one of them, the others are graded.
+"""Grade a folder: each submission in a process of its own, each result written as soon as it is there.
 
-A worker is a process that draws inputs, runs answers in a sandbox of its own and compares. Where the comparison itself
-takes too long or ends the worker (a value can be made for that), the worker is replaced and the answer says so.
+What was judged lies in OUT/judged/, a file for each submission, named by a digest of its content, the seed and the
+limits. So a run that was ended goes on, and a second one looks only at what changed.
 """
 
-import contextlib
+import csv
+import hashlib
+import json
 import multiprocessing
-import os
-import signal
-import sys
-import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
-from multiprocessing.connection import Connection, wait
+import re
+import resource
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from course_lib.classroom.assignment_cells import Assignment, read_assignments
-from course_lib.classroom.confinement import Limits
-from course_lib.classroom.judging import Graded, Task, grade, not_judged
+from course_lib.classroom.assignment_cells import read_assignments
+from course_lib.classroom.judge import Judged, as_json, from_json, judge
 from course_lib.classroom.model_answers import function_name
-from course_lib.classroom.probe import missing_protections
-from course_lib.classroom.sandbox import Sandbox, SandboxError, remove
-from course_lib.classroom.submissions import Collection, collect
-from course_lib.files import temporary_folder
-from course_lib.lessons.kit.projects import find_project
+from course_lib.classroom.points import BY_HAND, most_of
+from course_lib.classroom.sandbox import Limits, library_copy, require_walls
+from course_lib.classroom.self_test import self_test
+from course_lib.classroom.submissions import NotRead, Roster, Submission, collect, shown
+from course_lib.files import atomic_write, temporary_folder
+from course_lib.lessons.kit.projects import project_names
 
-JUDGE_SECONDS = 300.0
-SCORE_SECONDS = 7200.0
-"""Beyond an answer's own time: drawing, references and known mistakes take seconds, also on a slow machine."""
-START_SECONDS = 900.0
+JUDGE_SECONDS = 900  # of one submission, beyond its answers' own time; a slow machine needs some ten
+SCORE_SECONDS = 7200
+JUDGE_MEMORY_MB = 8000
+MAX_FILE = 20 << 20
+KEYS = ("right", "partly_right", "wrong", "not_attempted")
+FORKS = multiprocessing.get_context("forkserver")  # a clean process that has imported the judge makes the others
+FORKS.set_forkserver_preload(["course_lib.classroom.judge"])
+CANARY = re.compile(rb"not-for-students-[0-9a-f]{12}")
 
 
-@dataclass(frozen=True)
+@dataclass
+class Entry:
+    """One submission and what it came to. canary: whether it holds the words of a teacher's solutions."""
+
+    submission: Submission
+    judged: Judged
+    canary: bool = False
+    counts: bool = True
+
+    @property
+    def student(self) -> str:
+        return self.submission.student
+
+    @property
+    def name(self) -> str:
+        return shown(self.submission.path.name)
+
+
+@dataclass
 class Results:
-    """What a folder's grading came to.
+    """What a folder's grading came to. by_hand: (student, project) -> points that the teacher gave."""
 
-    graded: every answer, by student and exercise. assignments: the lessons that somebody handed in. seed: the same one
-    gives the same results again. missing: protections that this machine did not give.
-    """
-
-    collection: Collection
-    assignments: tuple[Assignment, ...]
-    graded: tuple[Graded, ...]
+    entries: list[Entry]
+    not_read: list[NotRead]
+    roster: Roster
     seed: int
-    missing: tuple[str, ...] = ()
+    walls: list[str]
+    machine: str
+    by_hand: dict[tuple[str, str], float] = field(default_factory=dict)
+
+    @property
+    def students(self) -> list[str]:
+        """Return everybody in the class or in the folder, in order."""
+        names = {one.student for one in self.entries} | {one.student for one in self.not_read if one.student}
+        return sorted(names | set(self.roster.rows), key=str.casefold)
+
+    @property
+    def lessons(self) -> list[str]:
+        return sorted({lesson for one in self.entries if one.counts for lesson in one.judged.lessons})
+
+    def of(self, student: str) -> list[Entry]:
+        return [one for one in self.entries if one.student == student and one.counts]
+
+    def most(self, lesson: str) -> int:
+        """Return the points that a lesson or project has."""
+        answers = {a.number: a.most for one in self.entries for a in one.judged.answers if _lesson(a.number) == lesson}
+        return sum(answers.values()) + (BY_HAND if lesson in project_names() else 0)
+
+    def points(self, student: str, lesson: str) -> float | None:
+        """Return a student's points in a lesson, or None if nothing of it was handed in."""
+        answers = [a for one in self.of(student) for a in one.judged.answers if _lesson(a.number) == lesson]
+        given = self.by_hand.get((student, lesson))
+        return sum(a.points for a in answers) + (given or 0) if answers or given is not None else None
+
+    def same_shape(self) -> list[tuple[str, list[str]]]:
+        """Return (exercise, students) of answers that are the same but for names, if they are long enough to tell."""
+        found: dict[tuple[str, str], set[str]] = {}
+        for one in self.entries:
+            for number, shape in one.judged.shapes.items():
+                found.setdefault((number, shape), set()).add(one.student)
+        return sorted((number, sorted(who)) for (number, _), who in found.items() if len(who) > 1)
+
+    def per_exercise(self) -> list[dict]:
+        """Return for each exercise: how many right, partly right, wrong, not attempted, the commonest hint, tries."""
+        rows = []
+        entries = [one for one in self.entries if one.counts]
+        for number in sorted({a.number for one in entries for a in one.judged.answers}):
+            answers = [a for one in entries for a in one.judged.answers if a.number == number]
+            hints = Counter(a.sentence for a in answers if a.status in ("wrong", "partly right")).most_common(1)
+            tries = sorted(one.judged.tries[number] for one in entries if number in one.judged.tries)
+            rows.append({
+                "number": number, "most": most_of(number), "mean": sum(a.points for a in answers) / len(answers),
+                **dict.fromkeys(KEYS, 0), **Counter(a.status.replace(" ", "_") for a in answers),
+                "hint": hints[0] if hints else None, "tries": tries[len(tries) // 2] if tries else None,
+            })  # fmt: skip
+        return rows
+
+    def predictions(self) -> list[tuple[str, str, str, list[tuple[str, str]]]]:
+        """Return (lesson, question, measured, [(student, predicted)]) of the whole class."""
+        found: dict[tuple[str, str, str], list] = {}
+        for one in self.entries:
+            for question, said, measured in one.judged.recalled if one.counts else ():
+                found.setdefault((one.judged.lessons[0], question, measured), []).append((one.student, said))
+        return [(*key, who) for key, who in sorted(found.items())]
+
+
+def _lesson(number: str) -> str:
+    return number.partition(".")[0]
 
 
 def grade_folder(
-    folder: Path,
-    seed: int,
-    jobs: int = 1,
-    limits: Limits | None = None,
-    trusted: bool = False,
-    scores: bool = False,
-    progress: Callable[[Iterator[Graded], int], Iterable[Graded]] = lambda graded, total: graded,
-) -> Results:
-    """Grade all submissions in a folder. `progress` wraps the iterator over answers and is given its length.
+    folder: Path, out: Path, seed: int, limits: Limits, jobs: int = 1, trust: bool = False, scores: bool = False,
+    roster: Roster | None = None, progress: Callable[..., Iterable] = lambda found, total: found,
+) -> Results:  # fmt: skip
+    """Grade all submissions in a folder. `progress` wraps the iterator over results and is given its length.
 
-    scores: also run each project's last function in the worlds of the seed, which takes minutes a submission.
-    Raises `SubmissionError` for what is no folder, `SandboxError` where this machine lacks a wall and it is not
-    `trusted`.
+    Raises `SandboxError` if this machine has no walls and `trust` is not given.
     """
-    limits = limits or Limits()
-    known = {assignment.name: assignment for assignment in read_assignments()}
-    collection = collect(folder, [assignment.path.stem for assignment in known.values()])
-    assignments = tuple(known[name] for name in sorted({one.lesson for one in collection.submissions}))
-    tasks = [
-        Task(one.student, one.lesson, one.path, exercise.number, function_name(exercise.stub))
-        for one in collection.submissions
-        for exercise in known[one.lesson].exercises()
-    ]
-    if scores:
-        projects = [one for one in collection.submissions if known[one.lesson].is_project]
-        tasks += [
-            Task(one.student, one.lesson, one.path, one.lesson, find_project(one.lesson).function) for one in projects
-        ]
-    with working_folder() as scratch:
-        missing = missing_protections(scratch / "probe", limits)
-        if missing and not trusted:
-            raise SandboxError(
-                "nothing was run, since this machine does not keep strangers' code in: "
-                + "; ".join(missing)
-                + ". Grade on Linux 5.13 or newer (a virtual machine will do), or, where you trust every student and "
-                "every file, add --trusted"
-            )
-        graded = list(progress(_graded(tasks, scratch, seed, jobs, limits, trusted), len(tasks)))
-    return Results(collection, assignments, tuple(sorted(graded, key=_order)), seed, tuple(missing))
+    roster = roster or Roster()
+    stubs = function_names()
+    found, not_read = collect(folder, {one.name: one.path.stem for one in read_assignments()}, roster)
+    tried, machine = [], ""
+    if not trust:
+        require_walls()
+    (out / "judged").mkdir(parents=True, exist_ok=True)
+    with temporary_folder() as scratch, library_copy(scratch) as library:
+        if not trust:
+            tried, machine = self_test(library, limits)
+        settings = (stubs, seed, library, limits, trust, scores)
+        entries = sorted(progress(_all(found, out / "judged", settings, jobs), len(found)), key=lambda e: e.submission)
+    entries, unread = _one_for_each(entries)
+    not_read = sorted([*not_read, *unread])
+    by_hand = points_by_hand(out / "by_hand.csv", entries)
+    return Results(entries, not_read, roster, seed, tried, machine, by_hand)
 
 
-def _order(graded: Graded) -> tuple[str, str]:
-    return graded.student, graded.number
+def function_names() -> dict[str, str]:
+    """Return the function that each exercise asks for, "06.1" -> "raw_score", and each project, "P1" -> "localize"."""
+    assignments = read_assignments()
+    stubs = {one.number: one.stub for each in assignments for one in each.exercises()}
+    stubs |= {each.name: each.submission() for each in assignments if each.is_project}
+    return {number: function_name(stub) for number, stub in stubs.items()}
 
 
-@contextlib.contextmanager
-def working_folder() -> Iterator[Path]:
-    """A folder for everything that is written meanwhile; it goes, however the grading ends."""
-    with temporary_folder() as path:
-        try:
-            yield path
-        finally:
-            for _ in range(50):  # processes that were killed a moment ago may still hold a file
-                remove(path)
-                if not path.exists():
-                    break
-                time.sleep(0.1)
+def _all(found: list[Submission], judged: Path, settings: tuple, jobs: int) -> Iterator[Entry]:
+    with ThreadPoolExecutor(jobs) as pool:
+        for future in as_completed([pool.submit(_one, one, judged, settings) for one in found]):
+            yield future.result()
 
 
-# Workers
-
-
-def _graded(
-    tasks: Sequence[Task], scratch: Path, seed: int, jobs: int, limits: Limits, trusted: bool
-) -> Iterator[Graded]:
-    """Every task's result, in the order in which they come."""
-    waiting = list(reversed(tasks))
-    workers = [
-        _Worker(scratch / f"worker-{number}", seed, limits, trusted) for number in range(min(jobs, len(tasks)) or 1)
-    ]
+def _one(one: Submission, judged: Path, settings: tuple) -> Entry:
+    """Judge one submission in a process of its own, unless it was judged before."""
+    if one.path.stat().st_size > MAX_FILE:
+        return Entry(one, Judged(why=f"the file has more than {MAX_FILE >> 20} MB"))
+    content = one.path.read_bytes()
+    stubs, seed, _, limits, trust, scores = settings
+    key = repr((one.guess, seed, limits, trust, scores, sorted(stubs.items()), one.path.suffix)).encode()
+    path = judged / f"{hashlib.sha256(key + content).hexdigest()[:32]}.json"
+    if not path.is_file():
+        process = FORKS.Process(target=judge_to_file, args=(one, path, *settings))
+        process.start()
+        process.join(SCORE_SECONDS if scores else JUDGE_SECONDS)
+        process.kill()
+        process.join()
     try:
-        while waiting or any(worker.task for worker in workers):
-            for worker in workers:
-                if worker.task is None and waiting:
-                    worker.give(waiting.pop())
-            busy = {worker.connection: worker for worker in workers if worker.task}
-            ready = wait(list(busy), timeout=0.5)
-            for worker in busy.values():
-                result = worker.result(worker.connection in ready)
-                if result is not None:
-                    yield result
-    finally:
-        for worker in workers:
-            worker.end()
+        found = from_json(json.loads(path.read_text(encoding="utf-8")))
+    except (OSError, ValueError, TypeError, KeyError):
+        found = Judged(why="it could not be judged: comparing its answers took too long or too much memory")
+    return Entry(one, found, bool(CANARY.search(content)))
 
 
-class _Worker:
-    """One worker as the grader sees it: a task at a time, ended and begun anew where it takes too long."""
-
-    def __init__(self, folder: Path, seed: int, limits: Limits, trusted: bool) -> None:
-        self._settings = (folder, seed, limits, trusted)
-        self._limits = limits
-        self._begun = 0
-        self.task: Task | None = None
-        self._start()
-
-    def _start(self) -> None:
-        context = multiprocessing.get_context("spawn")
-        folder, *rest = self._settings
-        self.connection, theirs = context.Pipe()
-        self._begun += 1
-        self._process = context.Process(
-            target=work, args=(theirs, folder.with_name(f"{folder.name}-{self._begun}"), *rest), daemon=True
-        )
-        self._process.start()
-        theirs.close()
-        self._fresh = True
-
-    def give(self, task: Task) -> None:
-        self.task = task
-        most = SCORE_SECONDS if task.number == task.lesson else self._limits.seconds + JUDGE_SECONDS
-        self._deadline = time.monotonic() + most + START_SECONDS * self._fresh
-        with contextlib.suppress(OSError):  # the worker has died: `result` will say so
-            self.connection.send(task)
-
-    def result(self, is_ready: bool) -> Graded | None:
-        """The task's result; None where it is not there yet."""
-        if is_ready:
-            try:
-                found = self.connection.recv()
-            except (EOFError, OSError):
-                found = "the grader's process ended while it looked at this answer"
-        elif time.monotonic() > self._deadline:
-            found = "comparing this answer took too long"
-        else:
-            return None
-        task, self.task, self._fresh = self.task, None, False
-        if isinstance(found, Graded):
-            return found
-        self.end()
-        self._start()
-        return not_judged(task, "wrong", f"Could not be judged: {found}.")
-
-    def end(self) -> None:
-        """End the process, whatever it does; its sandbox dies with it."""
-        self.connection.close()
-        self._process.kill()
-        self._process.join()
+def judge_to_file(one: Submission, path: Path, stubs: dict, seed: int, library: Path, limits: Limits, trust: bool,
+                  scores: bool) -> None:  # fmt: skip
+    """Judge one submission and write the result. The process may take so much time and memory, and no more."""
+    resource.setrlimit(resource.RLIMIT_AS, (JUDGE_MEMORY_MB << 20,) * 2)
+    judged = judge(one.path, stubs, seed, library, limits, one.guess, trust, scores)
+    atomic_write(path, json.dumps(as_json(judged)))
 
 
-def work(connection: Connection, folder: Path, seed: int, limits: Limits, trusted: bool) -> None:
-    """A worker's life: tasks in, results out; an error is sent as its text."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the grader's, who then ends the workers
-    _end_with_parent()
-    with Sandbox(folder, trusted) as sandbox:
-        while True:
-            try:
-                task = connection.recv()
-            except (EOFError, OSError):
-                return
-            try:
-                connection.send(grade(task, sandbox, seed, limits))
-            except Exception as error:
-                connection.send(f"{type(error).__name__}: {error}"[:300])
+def _one_for_each(entries: list[Entry]) -> tuple[list[Entry], list[NotRead]]:
+    """Let the newest file of a student for a lesson count; return all that could be read, and why others were not."""
+    not_read = [NotRead(e.student, e.name, e.judged.why) for e in entries if e.judged.why]
+    read = [e for e in entries if not e.judged.why]
+    newest: dict[tuple[str, str], Entry] = {}
+    for entry in sorted(read, key=lambda e: (e.submission.path.stat().st_mtime_ns, e.name)):
+        for lesson in entry.judged.lessons:
+            if (old := newest.get((entry.student, lesson))) is not None and old.counts:
+                old.counts = False
+                not_read.append(NotRead(old.student, old.name, f"is older than {entry.name}, which counts"))
+            newest[entry.student, lesson] = entry
+    return read, not_read
 
 
-def _end_with_parent() -> None:
-    if sys.platform == "linux":
-        from course_lib.classroom.confinement import die_with_parent
+def points_by_hand(path: Path, entries: list[Entry]) -> dict[tuple[str, str], float]:
+    """Read the points that the teacher gave in by_hand.csv; add a row for every project that has none yet.
 
-        parent = os.getppid()
-        die_with_parent()
-        if os.getppid() != parent:
-            os._exit(0)
+    Raises `ValueError` if a row holds no number from 0 to `BY_HAND`.
+    """
+    rows = []
+    if path.is_file():
+        rows = list(csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines()))
+    known = {(row["student"], row["project"]) for row in rows}
+    for one in entries:
+        for lesson in one.judged.lessons if one.counts else ():
+            if lesson in project_names() and (one.student, lesson) not in known:
+                rows.append({"student": one.student, "project": lesson, "points": "", "remark": ""})
+    if not rows:
+        return {}
+    with open(path, "w", encoding="utf-8-sig", newline="") as file:
+        writer = csv.DictWriter(file, ["student", "project", "points", "remark"])
+        writer.writeheader()
+        writer.writerows(rows)
+    given = {}
+    for row in rows:
+        if row["points"].strip():
+            points = float(row["points"].replace(",", "."))
+            if not 0 <= points <= BY_HAND:
+                raise ValueError(
+                    f"{path}: {row['student']}, {row['project']}: points are from 0 to {BY_HAND}, not {points}"
+                )
+            given[row["student"], row["project"]] = points
+    return given

@@ -1,18 +1,13 @@
-"""What of the teacher's is looked for in whatever students get: the canary, the secret seed, every solution's body.
+"""What of the teacher's is looked for in whatever students get: the canary, the secret seed, every solution."""
 
-Spaces and line ends do not count, nor does how a page colours code: notebooks are read as their texts, pages without
-their tags.
-"""
-
+import ast
 import html
 import json
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 from course_lib.classroom.assignment_cells import Assignment, tag_of
-from course_lib.classroom.model_answers import model_bodies
-from course_lib.classroom.nbgrader_course import MODULE
+from course_lib.classroom.model_answers import function_name, model_answers
 
 MIN_DIGITS = 8
 """A seed of fewer is found everywhere by chance."""
@@ -25,24 +20,32 @@ class LeakError(RuntimeError):
 
 
 def teachers_words(seed: int, canary: str) -> dict[str, str]:
-    """What no file of a student may hold, whatever the student wrote: by what it is called."""
-    words = {"the canary": canary, "the graded tests' module": f"from {MODULE} import"}
-    return words | ({"the secret seed": str(seed)} if len(str(seed)) >= MIN_DIGITS else {})
+    """Return what no file of a student may hold, whatever the student wrote, by what it is called."""
+    return {"the canary": canary} | ({"the secret seed": str(seed)} if len(str(seed)) >= MIN_DIGITS else {})
 
 
 def solutions(assignments: list[Assignment]) -> dict[str, str]:
-    """Bodies of all model answers, by what they are called; without those that the lesson itself teaches in a cell."""
+    """Return the bodies of all model answers by what they are called, without those that a cell of the lesson shows."""
     found = {}
     for assignment in assignments:
         taught = "\n".join(plain(cell.source) for cell in assignment.stored.cells if tag_of(cell) != "solution")
-        for name, body in model_bodies(assignment).items():
+        for number, code in model_answers(assignment).items():
+            body = body_of(code)
             if len(plain(body)) >= MIN_LETTERS and plain(body) not in taught:
-                found[f"the model answer of {name}() ({assignment.name})"] = body
+                found[f"the model answer of {number}"] = body
     return found
 
 
+def body_of(code: str) -> str:
+    """Return the lines of the last function's body, without its docstring."""
+    name = function_name(code)
+    node = next(one for one in ast.parse(code).body if isinstance(one, ast.FunctionDef) and one.name == name)
+    first = node.body[1 if ast.get_docstring(node) is not None else 0]
+    return "\n".join(code.splitlines()[first.lineno - 1 : node.end_lineno])
+
+
 def find_leaks(folder: Path, words: dict[str, str]) -> list[str]:
-    """ "06.ipynb holds the canary" for every file of a folder, and everything that it holds of `words`."""
+    """Return "06.ipynb holds the canary" for every file of a folder, and everything that it holds of `words`."""
     wanted = {name: plain(text) for name, text in words.items()}
     found = []
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):
@@ -52,26 +55,16 @@ def find_leaks(folder: Path, words: dict[str, str]) -> list[str]:
 
 
 def text_of(path: Path) -> str:
-    """All words of a file, without spaces."""
+    """Return all words of a file: of a notebook the texts in its JSON, of a page those without tags."""
     raw = path.read_bytes().decode("utf-8", errors="replace")
-    if path.suffix == ".ipynb":
-        return "\n".join(plain(text) for text in _strings(json.loads(raw)))
-    if path.suffix == ".html":
-        return plain(html.unescape(re.sub(r"<[^>]*>", "", raw)))
+    if path.suffix == ".ipynb":  # a list of lines is one text
+        raw = re.sub(r'\\n",\s*"', r"\\n", raw)
+        raw = "\n".join(json.loads(text) for text in re.findall(r'"(?:[^"\\]|\\.)*+"', raw))
+    elif path.suffix == ".html":
+        raw = html.unescape(re.sub(r"<[^>]*>", "", raw))
     return plain(raw)
 
 
 def plain(text: str) -> str:
-    """Text without spaces and line ends; a comment of code keeps its words."""
+    """Return text without spaces and line ends; a comment of code keeps its words."""
     return re.sub(r"[\s#]+", "", text)
-
-
-def _strings(value: object) -> Iterator[str]:
-    """Texts of a notebook; a list of lines is one text."""
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, list) and all(isinstance(part, str) for part in value):
-        yield "".join(value)
-    elif isinstance(value, list | dict):
-        for part in value.values() if isinstance(value, dict) else value:
-            yield from _strings(part)

@@ -1,24 +1,40 @@
-"""What an exercise is worth, and what an answer earns: the one rule of every way of grading."""
+"""What an exercise is worth and what an answer earns: the one scale of every way of grading."""
 
+import hashlib
 from collections.abc import Sequence
 
-from course_lib.lessons.kit.exercises import Exercise
+from course_lib.lessons.kit.exercises import Exercise, find_exercise
+from course_lib.lessons.kit.projects import project_names
 
 POINTS = {"warm-up": 2, "core": 4, "challenge": 6}
 """By the exercise's level; a half of each is a whole number."""
+SCORE_POINTS = 12
+"""Of a project's function in the graded worlds, beside its stages."""
+BY_HAND = 10
+"""Of a project's written part, which the teacher gives."""
 
 
 def points_of(exercise: Exercise) -> int:
-    """Points of an exercise whose every answer is right."""
+    """Return the points of an exercise whose every answer is right."""
     return POINTS[exercise.level]
 
 
-def earned(exercise: Exercise, right: Sequence[bool]) -> int:
-    """Points for the inputs on which the answer is right: all of them, or half for at least half of the inputs.
+def most_of(number: str) -> int:
+    """Return the points of exercise "06.1" or of the score of project "P1"."""
+    return SCORE_POINTS if number in project_names() else points_of(find_exercise(number))
 
-    A partly right function that is right by chance, or for one case alone, earns nothing.
+
+def earned(exercise: Exercise, right: Sequence[bool]) -> int:
+    """Return the points for the inputs on which the answer is right: all of them, or half for at least half of them.
+
+    A function that is right by chance, or for one case alone, earns nothing.
     """
     share = sum(right) / len(right)
     if share == 1:
         return points_of(exercise)
     return points_of(exercise) // 2 if share >= 0.5 else 0
+
+
+def secret(seed: int, number: str) -> int:
+    """Return the seed of one exercise's inputs: another for each, and none of the course's own."""
+    return 1_000_000 + int.from_bytes(hashlib.sha256(f"{seed}/{number}".encode()).digest()[:6], "big")

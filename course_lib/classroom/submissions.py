@@ -1,41 +1,45 @@
-"""A folder of what students handed in: whose each file is, which lesson's, and what is not read and why.
+"""A folder of what students handed in: whose each file is. What it holds, the judge reads.
 
-    FOLDER/alice/06_likelihood_and_weights.ipynb      a folder for each student, files named after the lesson
-    FOLDER/alice/06/anything.ipynb                    as nbgrader collects them
-    FOLDER/alice_06.ipynb, FOLDER/alice_P1.py         or all in one folder, student and lesson in the name
+    FOLDER/alice/06_likelihood_and_weights.ipynb                      a folder for each student
+    FOLDER/alice_06.ipynb, FOLDER/alice.py                            the student in the file's name
+    FOLDER/Alice Doe_12345_assignsubmission_file_/homework.ipynb      Moodle's download
+    FOLDER/doealice_LATE_12345_67890_homework-1.ipynb                 Canvas's download
 
-Nothing here runs what it finds. Links are not followed, and nothing is read that is not a plain file of a bounded size.
+Links are not followed, and nothing here opens a file.
 """
 
-import json
+import csv
 import os
 import re
 import stat
+import unicodedata
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-LARGEST_FILE_MB = 20
-"""A lesson with all its pictures has 0.4 MB."""
 MAX_FILES = 20_000
-MAX_CELLS = 2_000
-LARGEST_CODE = 1_000_000
-"""Characters of code in one notebook; a lesson has 20,000."""
 READ = (".ipynb", ".py")
 ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".7z", ".rar", ".bz2", ".xz")
+MOODLE = re.compile(r"^(?P<name>.+?)_(?P<id>\d+)_assignsubmission_\w+?_?$")
+CANVAS = re.compile(r"^(?P<name>[^\W\d_]+?)_(?:LATE_)?(?P<id>\d+)_\d+_(?P<rest>.+)$")
+VERSION = re.compile(r"(?:[ _-]*\(\d+\)|[ _-]+v?\d{1,2}|[ _-]+(?:final|copy|copie|kopie|late))+$", re.IGNORECASE)
+DATE = re.compile(r"[ _-]*(?:19|20)\d\d[-_.]?\d\d[-_.]?\d\d(?:[T_-]\d{4,6})?")
+NAMES = ("name", "full name", "student", "user", "username", "login", "email address", "email", "sis login id")
+NAMES += ("id", "identifier", "id number", "sis user id", "student id")
+"""Columns of a roster that may name a student, as Moodle's and Canvas's exports call them."""
 
 
 class SubmissionError(ValueError):
-    """A file that cannot be read as a submission; the message says why."""
+    """A folder or a roster that cannot be read; the message says why."""
 
 
 @dataclass(frozen=True, order=True)
 class Submission:
-    """One file that is graded. lesson: "06" or "P1"."""
+    """One file that is graded. guess: the lesson that its name says, or ""."""
 
     student: str
-    lesson: str
     path: Path
+    guess: str = ""
 
 
 @dataclass(frozen=True, order=True)
@@ -48,152 +52,131 @@ class NotRead:
 
 
 @dataclass(frozen=True)
-class Collection:
-    """All that a folder holds."""
+class Roster:
+    """Who is in the class: the columns as they were given, and a row for each student's key."""
 
-    submissions: tuple[Submission, ...]
-    not_read: tuple[NotRead, ...]
+    columns: Sequence[str] = ()
+    rows: dict[str, dict[str, str]] = field(default_factory=dict)
+    keys: dict[str, str] = field(default_factory=dict)
+
+    def find(self, *names: str) -> str:
+        """Return the key of the student whom one of these names means, or ""."""
+        return next((self.keys[key] for name in names if (key := plain(name)) in self.keys), "")
 
 
-def collect(folder: Path, titles: Sequence[str]) -> Collection:
-    """The submissions in a folder. titles: names of the lessons' files, without suffix ("06_likelihood_and_weights").
+def collect(folder: Path, lessons: dict[str, str], roster: Roster | None = None) -> tuple[list, list]:
+    """Return the submissions in a folder and what is not read. lessons: "06" -> "06_likelihood_and_weights".
 
-    Of several files of one student for one lesson the newest counts. Raises `SubmissionError` for what is no folder.
+    Raises `SubmissionError` if there is no folder or nothing in it.
     """
-    folder = Path(folder)
-    if not folder.is_dir():
-        raise SubmissionError(f"{folder} is no folder: name the one that holds what the students handed in")
-    if not any(folder.iterdir()):
-        raise SubmissionError(f"{folder} is empty: name the folder that holds what the students handed in")
-    found: dict[tuple[str, str], list[tuple[int, str, Path]]] = {}
-    not_read: list[NotRead] = []
-    for path, kind in _files(folder, folder, not_read):
+    folder, roster = Path(folder), roster or Roster()
+    if not folder.is_dir() or not any(folder.iterdir()):
+        what = "is empty" if folder.is_dir() else "is not a folder"
+        raise SubmissionError(f"{folder} {what}: name the folder that holds what the students handed in")
+    found, not_read = [], []
+    for path in files_in(folder):
         relative = path.relative_to(folder)
-        student, lesson = whose(relative, titles)
-        why = _refused(path, kind, student, lesson)
-        if why is not None:
+        student, guess = whose(relative, lessons, roster)
+        why = refused(path)
+        if not why and not student:
+            why = (
+                "does not say whose it is: name it as in alice_06.ipynb, or put it into a folder of the student's name"
+            )
+        if why:
             not_read.append(NotRead(student, shown(relative), why))
         else:
-            found.setdefault((student, lesson), []).append((path.stat().st_mtime_ns, shown(relative), path))
-    submissions = []
-    for (student, lesson), files in found.items():
-        files.sort(key=lambda file: (file[0], file[1]))
-        submissions.append(Submission(student, lesson, files[-1][2]))
-        not_read += [NotRead(student, name, f"older than {files[-1][1]}, which counts") for _, name, _ in files[:-1]]
-    return Collection(tuple(sorted(submissions)), tuple(sorted(not_read)))
+            found.append(Submission(student, path, guess))
+    return sorted(found), sorted(not_read)
 
 
-def _files(folder: Path, root: Path, not_read: list[NotRead]) -> list[tuple[Path, os.stat_result]]:
-    """Whatever is in a folder and below that is no folder, hidden ones left out; links as they are."""
-    found, folders = [], [folder]
-    while folders:
-        for entry in sorted(os.scandir(folders.pop()), key=lambda entry: entry.name):
-            if entry.name.startswith(".") or entry.name == "__pycache__":
-                continue
-            if entry.is_dir(follow_symlinks=False):
-                folders.append(Path(entry.path))
-            else:
-                found.append((Path(entry.path), entry.stat(follow_symlinks=False)))
-        if len(found) > MAX_FILES or len(folders) > MAX_FILES:
-            raise SubmissionError(f"{root} holds more than {MAX_FILES:,} files: is it the right folder?")
-    return found
-
-
-def whose(relative: Path, titles: Sequence[str]) -> tuple[str, str]:
-    """Student and lesson of a file, by its place and name; "" for what cannot be told.
-
-    The lesson: the course's own file name where the name ends so, else the last number of a lesson in it, else of a
-    folder about it. The student: the first folder, else the rest of the name.
-    """
-    lessons = {title[:2].upper(): title for title in titles}
-    stem, folders = shown(relative.name.removesuffix(relative.suffix)), [shown(part) for part in relative.parts[:-1]]
-    lesson, rest = "", stem
-    for title in titles:
-        if title.lower() in stem.lower():
-            start = stem.lower().rindex(title.lower())
-            lesson, rest = title[:2].upper(), stem[:start] + stem[start + len(title) :]
-    if not lesson:
-        tokens = [match for match in re.finditer(r"[A-Za-z0-9]+", stem) if match.group().upper() in lessons]
-        if tokens:
-            start, end = tokens[-1].span()
-            lesson, rest = tokens[-1].group().upper(), stem[:start] + stem[end:]
-    if not lesson:
-        around = [part.upper() for part in folders[1:] if part.upper() in lessons]
-        lesson = around[-1] if around else ""
-    return folders[0] if folders else rest.strip(" _-.()") if lesson else "", lesson
-
-
-def _refused(path: Path, kind: os.stat_result, student: str, lesson: str) -> str | None:
-    """Why a file is not read, or None."""
-    suffix = path.suffix.lower()
-    if stat.S_ISLNK(kind.st_mode):
-        return "is a link: links are not followed"
-    if not stat.S_ISREG(kind.st_mode):
-        return "is no plain file"
-    if suffix in ARCHIVES:
-        return "is an archive: unpack it, then grade the folder again"
-    if suffix not in READ:
-        return "is neither a notebook (.ipynb) nor a Python file (.py)"
-    if not lesson:
-        return "does not say which lesson it is: put the number into the name, as in alice_06.ipynb"
-    if not student:
-        return "does not say whose it is: name it as in alice_06.ipynb, or put it into a folder of the student's name"
-    if kind.st_size > LARGEST_FILE_MB << 20:
-        return f"has more than {LARGEST_FILE_MB} MB"
-    return None
-
-
-def read_cells(path: Path) -> list[tuple[str, str]]:
-    """Name and source of each code cell; a Python file is one cell. Raises `SubmissionError`, with the file's name."""
-    try:
-        return _cells(path)
-    except SubmissionError as error:
-        raise SubmissionError(f"{shown(path.name)} {error}") from None
-
-
-def _cells(path: Path) -> list[tuple[str, str]]:
-    text = _read_text(path)
-    if path.suffix.lower() == ".py":
-        return [("the file", text)]
-    try:
-        notebook = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise SubmissionError(f"is damaged: it is no notebook that can be read ({type(error).__name__})") from error
-    cells = notebook.get("cells") if isinstance(notebook, dict) else None
-    if not isinstance(cells, list):
-        raise SubmissionError("is no notebook of today's format: open it in JupyterLab and save it again")
+def files_in(folder: Path) -> list[Path]:
+    """Return all files in a folder and below, without hidden ones. Links stand for themselves."""
     found = []
-    for number, cell in enumerate(cells[:MAX_CELLS], start=1):
-        if isinstance(cell, dict) and cell.get("cell_type") == "code":
-            source = cell.get("source", "")
-            if isinstance(source, list) and all(isinstance(line, str) for line in source):
-                source = "".join(source)
-            if isinstance(source, str):
-                found.append((f"cell {number}", source))
-    if sum(len(source) for _, source in found) > LARGEST_CODE:
-        raise SubmissionError(f"holds more than {LARGEST_CODE:,} characters of code")
+    for place, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not name.startswith((".", "__")))
+        links = [name for name in folders if (Path(place) / name).is_symlink()]
+        found += [Path(place) / name for name in sorted([*names, *links]) if not name.startswith(".")]
+        if len(found) > MAX_FILES:
+            raise SubmissionError(f"{folder} holds more than {MAX_FILES:,} files: is it the right folder?")
     return found
 
 
-def _read_text(path: Path) -> str:
-    """The text of a plain file of a bounded size, wherever its name points to by now."""
+def refused(path: Path) -> str:
+    """Return why a file is not read, or ""."""
+    mode = path.lstat().st_mode
+    if stat.S_ISLNK(mode):
+        return "is a link: links are not followed"
+    if not stat.S_ISREG(mode):
+        return "is no plain file"
+    if path.suffix.lower() in ARCHIVES:
+        return "is an archive: unpack it, then grade the folder again"
+    return "" if path.suffix.lower() in READ else "is neither a notebook (.ipynb) nor a Python file (.py)"
+
+
+def whose(relative: Path, lessons: dict[str, str], roster: Roster) -> tuple[str, str]:
+    """Return the student and the lesson that a file's place and name tell; "" for what they do not tell."""
+    stem = shown(relative.name.removesuffix(relative.suffix))
+    folders = [shown(part) for part in relative.parts[:-1]]
+    names, rest = [], stem
+    for part in (folders[0] if folders else "", stem):
+        if match := MOODLE.match(part) or CANVAS.match(part):
+            names, rest = [match["id"], match["name"]], match.groupdict().get("rest", stem)
+            break
+    words = re.findall(r"[^\W_]+", DATE.sub("", rest))
+    guesses = [word.upper() for word in [*words, *folders[1:]] if word.upper() in lessons]
+    if not names and folders:
+        names = [folders[0]]
+    if not names:
+        names = [_without_lesson(VERSION.sub("", DATE.sub("", stem)), lessons)]
+    return roster.find(*names, *folders[:1]) or names[-1], guesses[0] if guesses else ""
+
+
+def _without_lesson(stem: str, lessons: dict[str, str]) -> str:
+    """Return a file's name without the lesson's: "alice_06_likelihood_and_weights" is alice's."""
+    parts = re.split(r"[ _.-]+", stem)
+    place = next((k for k, part in enumerate(parts) if part.upper() in lessons), len(parts))
+    title = lessons[parts[place].upper()].split("_") if place < len(parts) else []
+    kept = parts[:place] or [part for part in parts[place + 1 :] if part.lower() not in title]
+    return VERSION.sub("", "_".join(kept)).strip(" _-")
+
+
+def plain(name: str) -> str:
+    """Return a name in one form for comparison: case, encoding, punctuation and order of words do not count."""
+    words = re.findall(r"[^\W_]+", unicodedata.normalize("NFKC", name).casefold())
+    return " ".join(sorted(words))
+
+
+def read_roster(path: Path) -> Roster:
+    """Read a class list: a CSV file with a heading, as an LMS exports it. Raises `SubmissionError`."""
     try:
-        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
-    except OSError as error:
-        raise SubmissionError(f"cannot be opened: {error.strerror}") from error
-    with os.fdopen(descriptor, "rb") as file:
-        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            raise SubmissionError("is no plain file")
-        content = file.read((LARGEST_FILE_MB << 20) + 1)
-    if len(content) > LARGEST_FILE_MB << 20:
-        raise SubmissionError(f"has more than {LARGEST_FILE_MB} MB")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise SubmissionError("is not in UTF-8") from error
+        text = Path(path).read_text(encoding="utf-8-sig")
+        dialect = csv.Sniffer().sniff(text.splitlines()[0], delimiters=",;\t")
+        reader = csv.DictReader(text.splitlines(), dialect=dialect)
+        rows = [{k: v or "" for k, v in row.items() if k is not None} for row in reader]
+    except (OSError, UnicodeDecodeError, csv.Error, IndexError) as error:
+        raise SubmissionError(f"--roster {path} is not a CSV file with a heading ({error})") from error
+    known = {column.strip().casefold(): column for column in reader.fieldnames or ()}
+    columns = [known[name] for name in NAMES if name in known]
+    first, last = known.get("first name"), known.get("last name") or known.get("surname")
+    if not columns and not (first and last):
+        raise SubmissionError(f"--roster {path} has no column that names students: call one of them {', '.join(NAMES)}")
+    by_key, keys = {}, {}
+    for row in rows:
+        told = [row[column] for column in columns if row[column].strip()]
+        if first and last:
+            told = [f"{row[first]} {row[last]}", *told]
+        if told:
+            by_key[told[0]] = row
+            for name in told:
+                digits = re.findall(r"\d+", name)
+                extra = [name.partition("@")[0], re.sub(r"\W", "", name)]
+                extra += ["".join(reversed(name.split(maxsplit=1)))] if " " in name else []
+                for one in [name, *extra, *([digits[-1]] if digits and "participant" in name.casefold() else [])]:
+                    keys.setdefault(plain(one), told[0])
+    return Roster(tuple(reader.fieldnames or ()), by_key, keys)
 
 
 def shown(name: object) -> str:
-    """A name of the file system as text that can be printed, whatever its bytes are."""
-    text = os.fsencode(str(name)).decode("utf-8", "replace")
+    """Return a name of the file system as text in one form (NFC), whatever its bytes are."""
+    text = unicodedata.normalize("NFC", os.fsencode(str(name)).decode("utf-8", "replace"))
     return "".join(letter if letter.isprintable() else "\ufffd" for letter in text)

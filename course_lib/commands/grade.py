@@ -1,87 +1,99 @@
-"""Grade a folder of submissions: points and hints as CSV and as a page; students' code runs in a sandbox."""
+"""Grade a folder of submissions in a sandbox: points, hints and the class as a page, feedback pages, CSV tables."""
 
 import argparse
+import json
 import secrets
-import sys
 import time
 from pathlib import Path
 
 from course_lib.commands import arguments as options
 from course_lib.commands.output import progress_bar
-from course_lib.files import run_folder
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    told = "what the students handed in: FOLDER/alice/06_....ipynb or FOLDER/alice_06.ipynb, notebooks or .py files"
+    told = "what the students handed in: a folder for each student, files as alice_06.ipynb, or an LMS's download"
     add("folder", type=Path, metavar="FOLDER", help=told)
-    add("--out", type=Path, metavar="DIR", help="where the results go (default: FOLDER with -grades after its name)")
-    told = (
-        "draws the hidden inputs; keep it to yourself (default: a new one, which the page tells: with it the results "
-    )
-    add("--seed", type=int, help=told + "come again)")
-    options.add_number(parser, "--jobs", "answers at a time (default: one a processor)")
+    told = "where the results go (default: FOLDER with -grades after its name); a second run looks only at what changed"
+    add("--out", type=Path, metavar="DIR", help=told)
+    told = "the class list, as your LMS exports it: who is missing, and its columns come back beside the points"
+    add("--roster", type=Path, metavar="CSV", help=told)
+    told = "draws the hidden inputs; keep it to yourself (default: that of DIR, else a new one)"
+    add("--seed", type=int, help=told)
+    options.add_number(parser, "--jobs", "submissions at a time (default: one a processor)")
     add("--seconds", type=float, default=60.0, metavar="S", help="all calls of one answer (default: %(default)g)")
     add("--call-seconds", type=float, default=20.0, metavar="S", help="one call of an answer (default: %(default)g)")
-    add("--memory", type=int, default=1000, metavar="MB", help="memory of one answer (default: %(default)d)")
+    add("--memory", type=int, default=1500, metavar="MB", help="memory of one submission (default: %(default)d)")
     options.add_flag(parser, "--scores", "also run the projects' last functions: minutes for each submission")
-    told = "grade although this machine cannot keep strangers' code in: only where you trust every file"
-    options.add_flag(parser, "--trusted", told)
+    told = "grade without walls, with your rights: only if you have read every file"
+    options.add_flag(parser, "--trust", told)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    if sys.platform == "win32":
-        raise RuntimeError("grading needs Linux; on Windows use the Windows Subsystem for Linux (WSL 2)")
     from joblib import cpu_count
 
     # Only here: they bring the lessons with them.
-    from course_lib.classroom.confinement import Limits
-    from course_lib.classroom.grade_page import grade_page
-    from course_lib.classroom.grade_tables import answers_table, totals_table
     from course_lib.classroom.grading import grade_folder
+    from course_lib.classroom.pages import write_results
+    from course_lib.classroom.sandbox import Limits
+    from course_lib.classroom.submissions import read_roster
 
     out = results_folder(arguments.folder, arguments.out)
     options.require_processes("--jobs", arguments.jobs)
     options.require_positive("--seconds", arguments.seconds, "seconds")
+    options.require_positive("--call-seconds", arguments.call_seconds, "seconds")
     options.require_positive("--memory", arguments.memory, "MB")
-    seed = secrets.randbelow(2**48) if arguments.seed is None else arguments.seed
+    seed = kept_seed(out, arguments.seed)
     options.require_seed(seed)
-    options.require_output_folder(out)
+    roster = read_roster(arguments.roster) if arguments.roster else None
     limits = Limits(arguments.call_seconds, arguments.seconds, arguments.memory)
-    started, jobs, bar = time.monotonic(), arguments.jobs or cpu_count(), progress_bar("grading", "answer")
-    results = grade_folder(arguments.folder, seed, jobs, limits, arguments.trusted, arguments.scores, bar)
-    pages = {
-        "answers.csv": answers_table(results),
-        "totals.csv": totals_table(results),
-        "grades.html": grade_page(results),
-    }
-    print(summary(results, time.monotonic() - started), flush=True)  # before the disk can be full
-    with run_folder(out, "grade") as new:  # the table and the page are of one grading
-        for name, text in pages.items():
-            (new / name).write_bytes(text.encode("utf-8"))
-    print("\n".join(f"{out / name}" for name in pages))
+    started, bar = time.monotonic(), progress_bar("grading", "file")
+    results = grade_folder(
+        arguments.folder,
+        out,
+        seed,
+        limits,
+        arguments.jobs or cpu_count(),
+        arguments.trust,
+        arguments.scores,
+        roster,
+        bar,
+    )
+    names = write_results(results, out)
+    print(summary(results, time.monotonic() - started))
+    print("\n".join(f"{out / name}" for name in names))
     return 0
 
 
 def results_folder(folder: Path, out: Path | None) -> Path:
-    """Where the results go. Raises `ValueError` for a place among the submissions."""
+    """Return where the results go. Raises `ValueError` for a place among the submissions."""
     found = Path(out) if out is not None else folder.resolve().with_name(f"{folder.resolve().name}-grades")
     if found.resolve().is_relative_to(folder.resolve()):
         raise ValueError(f"--out {found} lies among the submissions: results would be handed back as somebody's work")
     return found
 
 
+def kept_seed(out: Path, seed: int | None) -> int:
+    """Return the seed that was given, else that of an earlier run in this folder, else a new one; keep it there."""
+    path = out / "run.json"
+    if seed is None and path.is_file():
+        seed = json.loads(path.read_text(encoding="utf-8"))["seed"]
+    seed = secrets.randbelow(2**48) if seed is None else seed
+    out.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps({"command": "grade", "seed": seed}) + "\n", encoding="utf-8")
+    return seed
+
+
 def summary(results, seconds: float) -> str:
-    """What the terminal says: how many, what was refused and not read, how long, and with which seed."""
-    statuses = [one.status for one in results.graded]
+    """Return what the terminal says: how many, what was not read, how long, the walls, and the seed."""
+    statuses = [a.status for one in results.entries if one.counts for a in one.judged.answers]
     counts = ", ".join(f"{statuses.count(status)} {status}" for status in sorted(set(statuses))) or "none"
-    students = {one.student for one in results.graded}
-    lines = [f"{len(students)} students, {len(statuses)} answers: {counts}; {seconds:.0f} s"]
-    tried = [(one.student, one.number, what) for one in results.graded for what in one.refused]
-    lines += [f"refused: {student}, {number}: tried to {what}" for student, number, what in tried[:20]]
-    lines += [f"and {len(tried) - 20} more, on the page"] if len(tried) > 20 else []
-    lines += [f"not read: {one.name}: {one.why}" for one in results.collection.not_read[:20]]
-    held = "all walls about strangers' code held" if not results.missing else "--trusted, without: "
-    peak = max((one.peak_mb for one in results.graded), default=0.0)
-    lines += [f"{held}{'; '.join(results.missing)}. Seed: {results.seed}"]
-    return "\n".join([*lines, f"memory of the largest answer's process: {peak:.0f} MB"])
+    handed_in = {one.student for one in results.entries}
+    lines = [f"{len(handed_in)} students, {len(statuses)} answers: {counts}; {seconds:.0f} s"]
+    lines += [f"not read: {one.name}: {one.why}" for one in results.not_read[:20]]
+    if missing := [name for name in results.roster.rows if name not in handed_in]:
+        lines.append(f"nothing from {len(missing)} of the class: {', '.join(missing[:20])}")
+    walls = (
+        f"{len(results.walls)} ways through the walls tried, all failed" if results.walls else "WITHOUT WALLS (--trust)"
+    )
+    return "\n".join([*lines, f"{walls}. Seed: {results.seed}"])

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 from course_lib.classroom.assignment_cells import Assignment, read_assignments, tag_of
-from course_lib.classroom.model_answers import function_name, model_bodies, solved_stub
+from course_lib.classroom.model_answers import model_answers
 from course_lib.lessons.kit.exercises import find_exercise
 from course_lib.lessons.kit.mistakes import ARROW, WHOLE_BODY, edited_text
 
@@ -15,7 +15,7 @@ def assignment_of(name: str) -> Assignment:
 
 
 def handed_in(path: Path, name: str, answers: dict[str, str]) -> Path:
-    """The notebook of a lesson at `path`, with the source `answers[number]` in place of a stub; others untouched."""
+    """Write the notebook of a lesson with the source `answers[number]` in place of a stub; others are untouched."""
     notebook = assignment_of(name).notebook()
     for cell in notebook.cells:
         if tag_of(cell) == "exercise" and cell.metadata.get("exercise") in answers:
@@ -28,14 +28,12 @@ def handed_in(path: Path, name: str, answers: dict[str, str]) -> Path:
 
 
 def solved(name: str) -> dict[str, str]:
-    """The model answers of a lesson, by number."""
-    assignment = assignment_of(name)
-    bodies = model_bodies(assignment)
-    return {one.number: solved_stub(one.stub, bodies[function_name(one.stub)]) for one in assignment.exercises()}
+    """Return the model answers of a lesson, by number."""
+    return model_answers(assignment_of(name))
 
 
 def mistaken(number: str, which: int = 0) -> str:
-    """A known mistake of an exercise as a student's cell: one of the edits that change a part of the solution."""
+    """Return a known mistake of an exercise as a student's cell: an edit that changes a part of the solution."""
     exercise = find_exercise(number)
     lines = exercise.mistakes.splitlines()
     edits = [line for line in lines if ARROW in line and not line.strip().startswith(WHOLE_BODY)]

@@ -1,11 +1,18 @@
 """Answers as text: what goes in comes out, and nothing else ever does."""
 
+import base64
 import json
+import struct
 
 import numpy as np
 import pytest
 
 from course_lib.classroom.answers import AnswerFormatError, Unreadable, decode, encode, load
+
+
+def array(header: str) -> str:
+    """A file of NumPy's with this header and no data."""
+    return base64.b64encode(b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode()).decode()
 
 
 def there_and_back(value):
@@ -29,14 +36,14 @@ def test_arrays_come_back_with_shape_and_type(kind, shape):
     found = there_and_back(value)
     assert type(found) is np.ndarray
     assert found.shape == shape
-    assert found.dtype == np.dtype(kind).newbyteorder("=")
+    assert found.dtype == np.dtype(kind)
     np.testing.assert_array_equal(found, value)
 
 
 def test_numbers_of_numpy_stay_numbers_of_numpy_and_nan_stays_nan():
     assert type(there_and_back(np.float32(0.5))) is np.float32
     assert np.isnan(there_and_back(float("nan")))
-    assert type(there_and_back(np.longdouble(2))) is np.float64
+    assert there_and_back(np.longdouble(2)) == 2
 
 
 def test_what_holds_no_numbers_arrives_under_its_name():
@@ -44,7 +51,13 @@ def test_what_holds_no_numbers_arrives_under_its_name():
         def __reduce__(self):
             raise AssertionError("nobody asks")
 
-    for value, name in [(Bomb(), "Bomb"), ({}, "dict"), (np.array([None]), "ndarray of object"), ({1}, "set")]:
+    for value, name in [
+        (Bomb(), "Bomb"),
+        ({}, "dict"),
+        (np.array([None]), "ndarray"),
+        ({1}, "set"),
+        (10**10000, "int"),
+    ]:
         found = there_and_back(value)
         assert isinstance(found, Unreadable)
         assert type(found).__name__ == name
@@ -52,7 +65,7 @@ def test_what_holds_no_numbers_arrives_under_its_name():
 
 def test_a_view_of_more_than_may_be_sent_is_never_copied():
     found = there_and_back(np.broadcast_to(1.0, (10**7,)))
-    assert "too large" in type(found).__name__
+    assert isinstance(found, Unreadable)
 
 
 def test_a_class_of_ones_own_is_the_number_or_row_that_it_is_underneath():
@@ -76,16 +89,12 @@ def test_a_class_of_ones_own_is_the_number_or_row_that_it_is_underneath():
 @pytest.mark.parametrize(
     "written",
     [
-        {}, {"tuple": 3}, {"tuple": [], "list": []}, {"float": "1e400"}, {"kind": 3}, 10**100, {"pickle": "gASVAA=="},
-        {"array": "", "type": "|O", "shape": [0], "scalar": False},
-        {"array": "", "type": "<f8", "shape": [-1], "scalar": False},
-        {"array": "", "type": "<f8", "shape": [10**18], "scalar": False},
-        {"array": "", "type": "<f8", "shape": [0] * 40, "scalar": False},
-        {"array": "", "type": "<f8", "shape": [0, 10**30], "scalar": False},
-        {"array": "AAAA", "type": "<f8", "shape": [1], "scalar": False},
-        {"array": "!", "type": "<f8", "shape": [1], "scalar": False},
-        {"array": 3, "type": "<f8", "shape": [1], "scalar": False},
-        {"array": "", "type": ["<f8"], "shape": [0], "scalar": False},
+        {}, {"tuple": 3}, {"tuple": {}, "list": 1}, {"pickle": "gASVAA=="}, {"array": ""}, {"array": 3},
+        {"array": "!", "scalar": False}, {"array": array("{'descr': '|O', 'fortran_order': False, 'shape': (1,)}")},
+        {"array": array("{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000000,)}")},
+        {"array": array("{'descr': '<f8', 'fortran_order': False, 'shape': (-1,)}")},
+        {"array": array("{'descr': [('a', '<f8')], 'fortran_order': False, 'shape': (0,)}")},
+        {"array": array("{'descr': '<U9', 'fortran_order': False, 'shape': (0,)}")}, {"array": array("(" * 200)},
     ],
 )  # fmt: skip
 def test_what_nobody_writes_honestly_is_refused(written):

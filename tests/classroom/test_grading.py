@@ -1,266 +1,151 @@
-"""A whole folder graded: tables and page, whatever is in it; the same bytes again; nothing left behind."""
+"""A folder's grading: each result written at once, what was judged is not judged again, the class at a glance."""
 
 import csv
 import io
+import json
 import os
-import signal
-import subprocess
-import sys
-import time
-from html.parser import HTMLParser
-from pathlib import Path
 
 import pytest
 
 from course_lib.classroom import grading
-from course_lib.classroom.confinement import Limits
-from course_lib.classroom.grade_page import grade_page
-from course_lib.classroom.grade_tables import answers_table, totals_table, written
-from course_lib.classroom.grading import Results, grade_folder
-from course_lib.classroom.judging import Graded, Task
-from course_lib.classroom.probe import PROTECTIONS
-from course_lib.classroom.sandbox import SandboxError
-from course_lib.classroom.submissions import Collection, NotRead
-from course_lib.commands import grade as command
-from tests.classroom.handed_in import assignment_of, handed_in, mistaken, solved
-from tests.classroom.walls import require_walls
+from course_lib.classroom.grading import grade_folder
+from course_lib.classroom.handout import canary_of
+from course_lib.classroom.pages import feedback_name, write_results, written
+from course_lib.classroom.sandbox import Limits, SandboxError
+from course_lib.classroom.submissions import read_roster
+from course_lib.cli import main
+from tests.classroom.handed_in import handed_in, mistaken, solved
 
-SEED = 20_001
-WILD = "=cmd|'calc', \"x\""
-
-
-pytestmark = pytest.mark.slow
+SEED = 5_000_017
+ROSTER = "name,id\nalice,7\nbob,8\ncarol,9\n"
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """Seven students of lesson 06, and what else lies in such a folder."""
-    folder = tmp_path_factory.mktemp("class") / "handed in"
-    right = solved("06")
-    handed_in(folder / "alice" / assignment_of("06").path.name, "06", right)
-    handed_in(folder / "bob_06.ipynb", "06", {})
-    handed_in(folder / f"{WILD}_06.ipynb", "06", {number: mistaken(number) for number in right})
-    removes = "def raw_score(hidden, alpha):\n    import os\n    os.remove(__file__ if 0 else '/etc/hostname')\n"
-    handed_in(folder / "mallory" / "06.ipynb", "06", right | {"06.1": removes})
-    half = "def raw_score(hidden, alpha):\n    [1][len(hidden) % 2]\n"
-    half += "    return (1 - hidden) * alpha / (alpha + 0.02) + hidden * alpha / (alpha + 2)\n"
-    handed_in(folder / "nina_06.ipynb", "06", {"06.1": half, "06.2": "def weigh_rightly(:"})
-    (folder / "oscar_06.py").write_text("\n".join(["import numpy as np", *right.values()]), encoding="utf-8")
-    (folder / "peggy_06.ipynb").write_text('{"cells": [', encoding="utf-8")
-    (folder / "class.zip").write_bytes(b"PK")
-    os.symlink("/etc/passwd", folder / "victor_06.ipynb")
-    return folder
+def graded(library, tmp_path_factory):
+    """Grade a class of two lessons, with copies, versions, damaged files and somebody missing."""
+    folder = tmp_path_factory.mktemp("class")
+    out = folder.with_name("class-grades")
+    answers = solved("06")
+    handed_in(folder / "alice" / "homework.ipynb", "06", answers)
+    handed_in(folder / "alice" / "P1.ipynb", "P1", {})
+    handed_in(folder / "bob_06_v1.ipynb", "06", {})
+    os.utime(folder / "bob_06_v1.ipynb", (1, 1))
+    handed_in(folder / "bob_06_v2.ipynb", "06", answers | {"06.1": f"# {canary_of(3)}\n{mistaken('06.1')}"})
+    (folder / "dora_06.ipynb").write_text("{", encoding="utf-8")
+    (folder / "class.csv").write_text(ROSTER, encoding="utf-8")
+    roster = read_roster(folder / "class.csv")
+    (folder / "class.csv").unlink()
+    results = grade_folder(folder, out, SEED, Limits(), jobs=2, roster=roster)
+    write_results(results, out)
+    return results, folder, out
 
 
-@pytest.fixture(scope="module")
-def results(folder, tmp_path_factory):
-    require_walls(tmp_path_factory.mktemp("walls"))
-    return grade_folder(folder, SEED, jobs=2)
+def table(path):
+    return list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8-sig"))))
 
 
-def of(results: Results, student: str) -> dict[str, Graded]:
-    return {one.number: one for one in results.graded if one.student == student}
+def test_totals_have_everybody_in_the_class_with_the_columns_of_the_list(graded):
+    results, _, out = graded
+    rows = table(out / "totals.csv")
+    assert [(row["student"], row["id"], row["06 (of 16)"], row["handed in"]) for row in rows] == [
+        ("alice", "7", "16", "yes"), ("bob", "8", "14", "yes"), ("carol", "9", "", "no"), ("dora", "", "", "no"),
+    ]  # fmt: skip
+    assert (out / "totals.csv").read_bytes().startswith(b"\xef\xbb\xbf")
+    assert results.most("P1") == 28 + 10
+    assert {row["tries"] for row in table(out / "answers.csv")} == {""}
 
 
-def rows(text: str) -> list[list[str]]:
-    return list(csv.reader(io.StringIO(text)))
+def test_the_newest_version_counts_and_what_is_not_read_is_named(graded):
+    why = {one.name: one.why for one in graded[0].not_read}
+    assert why["bob_06_v1.ipynb"] == "is older than bob_06_v2.ipynb, which counts"
+    assert "not a notebook" in why["dora_06.ipynb"]
 
 
-def test_the_solved_notebook_earns_all_points_and_so_does_a_python_file(results):
-    for student in ("alice", "oscar"):
-        found = of(results, student)
-        assert [one.points for one in found.values()] == [2, 4, 4, 6], found
-        assert not any(one.refused for one in found.values())
+def test_the_class_exercise_by_exercise_with_the_commonest_hint(graded):
+    row = next(row for row in graded[0].per_exercise() if row["number"] == "06.1")
+    assert (row["right"], row["wrong"], row["most"]) == (1, 1, 2)
+    assert row["hint"][1] == 1
 
 
-def test_the_untouched_notebook_earns_nothing_and_is_called_not_attempted(results):
-    found = of(results, "bob").values()
-    assert {(one.status, one.points) for one in found} == {("not attempted", 0)}
+def test_equal_answers_and_the_teachers_words_are_named_without_accusation(graded):
+    results, _, out = graded
+    assert ("06.3", ["alice", "bob"]) in results.same_shape()
+    assert [one.student for one in results.entries if one.canary] == ["bob"]
+    assert "no accusation" in (out / "grades.html").read_text(encoding="utf-8")
 
 
-def test_a_typical_mistake_gets_its_own_hint(results):
-    from course_lib.lessons.kit.exercises import find_exercise
-
-    for number, one in of(results, WILD).items():
-        assert one.sentence in [mistake.hint for mistake in find_exercise(number).known]
-        assert one.status in ("wrong", "partly right")
-
-
-def test_what_was_refused_is_said_and_the_other_answers_count(results):
-    found = of(results, "mallory")
-    assert found["06.1"].refused == ("remove /etc/hostname",)
-    assert found["06.1"].points == 0
-    assert [found[number].points for number in ("06.2", "06.3", "06.4")] == [4, 4, 6]
+def test_a_students_page_holds_no_input_and_nothing_of_the_others(graded):
+    page = (graded[2] / "feedback" / "bob.html").read_text(encoding="utf-8")
+    assert "14</strong> of 16" in page
+    for words in ("alice", str(graded[0].seed), "inputs right"):
+        assert words not in page
 
 
-def test_a_cell_that_cannot_be_read_is_said(results):
-    one = of(results, "nina")["06.2"]
-    assert one.points == 0
-    assert "SyntaxError" in one.problems[0]
+def test_points_by_hand_are_asked_for_and_added(graded, library):
+    _, folder, out = graded
+    rows = (out / "by_hand.csv").read_text(encoding="utf-8-sig")
+    assert rows.splitlines()[1] == "alice,P1,,"
+    (out / "by_hand.csv").write_text(rows.replace("alice,P1,,", "alice,P1,7.5,good"), encoding="utf-8")
+    again = grade_folder(folder, out, SEED, Limits())
+    assert again.points("alice", "P1") == 7.5
+    (out / "by_hand.csv").write_text(rows.replace("alice,P1,,", "alice,P1,99,"), encoding="utf-8")
+    with pytest.raises(ValueError, match="from 0 to 10"):
+        grade_folder(folder, out, SEED, Limits())
+    (out / "by_hand.csv").unlink()
 
 
-def test_a_damaged_file_is_said_for_every_exercise(results):
-    found = of(results, "peggy").values()
-    assert {one.status for one in found} == {"not read"}
-    assert len(found) == 4
-    assert all("damaged" in one.sentence for one in found)
+def test_what_was_judged_is_not_judged_again(graded, library, monkeypatch):
+    results, folder, out = graded
+    monkeypatch.setattr(grading.FORKS, "Process", lambda *given, **named: pytest.fail("judged again"))
+    again = grade_folder(folder, out, SEED, Limits())
+    assert [one.judged for one in again.entries] == [one.judged for one in results.entries]
 
 
-def test_the_table_has_a_row_for_each_student_and_exercise_and_no_formula(results):
-    header, *body = rows(answers_table(results))
-    assert header[:6] == ["student", "lesson", "exercise", "status", "points", "of"]
-    assert len(body) == 7 * 4
-    assert {row[0] for row in body} >= {"alice", "'" + WILD}
-    assert not any(cell.startswith(("=", "+", "-", "@")) for row in body for cell in row)
+def test_a_run_that_was_ended_goes_on(graded, library, monkeypatch):
+    _, folder, out = graded
+    lost = sorted((out / "judged").glob("*.json"))[0]
+    kept = json.loads(lost.read_text(encoding="utf-8"))
+    lost.unlink()
+    judged = []
+    process = grading.FORKS.Process
+    monkeypatch.setattr(grading.FORKS, "Process", lambda *a, **k: judged.append(k["args"][0]) or process(*a, **k))
+    grade_folder(folder, out, SEED, Limits())
+    assert len(judged) == 1
+    assert json.loads(lost.read_text(encoding="utf-8")) == kept
 
 
-def test_the_totals_add_up(results):
-    header, *body = rows(totals_table(results))
-    assert header == ["student", "06 (of 16)", "sum (of 16)"]
-    totals = {row[0]: row[1:] for row in body}
-    assert totals["alice"] == ["16", "16"]
-    assert totals["mallory"] == ["14", "14"]
-    assert totals["bob"] == ["0", "0"]
-    assert totals["victor"] == ["", "0"]
+def test_nothing_runs_without_walls_unless_it_is_trusted(tmp_path, monkeypatch, capsys):
+    handed_in(tmp_path / "in" / "alice_06.ipynb", "06", solved("06"))
+
+    def none():
+        raise SandboxError("no walls here")
+
+    monkeypatch.setattr(grading, "require_walls", none)
+    assert main(["grade", str(tmp_path / "in")]) == 2
+    assert "no walls here" in capsys.readouterr().err
+    assert main(["grade", str(tmp_path / "in"), "--trust", "--seed", "3"]) == 0
+    out = capsys.readouterr().out
+    assert "1 students, 4 answers: 4 right" in out
+    assert "WITHOUT WALLS" in out
+    assert "Graded without walls" in (tmp_path / "in-grades" / "grades.html").read_text(encoding="utf-8")
+    assert json.loads((tmp_path / "in-grades" / "run.json").read_text())["seed"] == 3
 
 
-class Page(HTMLParser):
-    """Tags, their attributes, and texts of a page."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.tags, self.text, self.open = [], "", []
-        self.feed(text)
-
-    def handle_starttag(self, tag, attributes):
-        self.tags.append((tag, dict(attributes)))
-        if tag not in ("meta", "br"):
-            self.open.append(tag)
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-    def handle_data(self, data):
-        self.text += data
+def test_results_never_lie_among_the_submissions(tmp_path, capsys):
+    (tmp_path / "alice_06.ipynb").write_text("{}")
+    assert main(["grade", str(tmp_path), "--out", str(tmp_path / "grades")]) == 2
+    assert "lies among the submissions" in capsys.readouterr().err
 
 
-def test_the_page_stands_alone_and_says_all_of_it(results):
-    text = grade_page(results)
-    page = Page(text)
-    assert not page.open
-    tags = [tag for tag, _ in page.tags]
-    assert not {"script", "img", "link", "iframe", "object", "form"} & set(tags)
-    assert "http" not in text.replace("http-equiv", "")
-    for words in ("alice", WILD, "Tried to remove /etc/hostname: refused.", "links are not followed", "unpack it"):
-        assert words in page.text
-    assert all(words in page.text for words in PROTECTIONS)
-    assert f"Seed of the inputs: {SEED}" in page.text
+@pytest.mark.parametrize("cell", ["=1+1", "+1", "-1", "@x", "\t=1", " =1", "\uff1d1", "\ufe661", "\uff0b1"])
+def test_no_cell_is_a_formula_and_every_text_is_quoted(cell):
+    text = written([[cell, 'a;b,"c"']])
+    assert text.startswith("\ufeff\"'")
+    assert next(csv.reader(io.StringIO(text[1:]))) == [f"'{cell}", 'a;b,"c"']
 
 
-def test_the_page_is_accessible_by_its_structure(results):
-    page = Page(grade_page(results))
-    tags = [tag for tag, _ in page.tags]
-    assert dict(page.tags)["html"] == {"lang": "en"}
-    assert tags.count("h1") == tags.count("main") == tags.count("title") == 1
-    assert tags.count("table") == tags.count("caption") > 3
-    assert all("scope" in attributes for tag, attributes in page.tags if tag == "th")
-    ids = [attributes["id"] for _, attributes in page.tags if "id" in attributes]
-    assert len(ids) == len(set(ids))
-    linked = {attributes["href"].removeprefix("#") for tag, attributes in page.tags if tag == "a"}
-    named = {attributes["aria-labelledby"] for _, attributes in page.tags if "aria-labelledby" in attributes}
-    assert linked | named <= set(ids)
-
-
-def test_the_same_folder_and_seed_give_the_same_bytes_with_any_number_of_jobs(results, folder):
-    again = grade_folder(folder, SEED, jobs=1)
-    for table in (answers_table, totals_table, grade_page):
-        assert table(again) == table(results)
-
-
-def test_nothing_is_run_on_a_machine_without_walls_unless_trusted(folder, monkeypatch):
-    monkeypatch.setattr(grading, "missing_protections", lambda *given: ("there is no network",))
-    monkeypatch.setattr(grading, "_graded", lambda *given: iter(()))
-    with pytest.raises(SandboxError, match=r"nothing was run.*there is no network.*--trusted"):
-        grade_folder(folder, SEED)
-    found = grade_folder(folder, SEED, trusted=True)
-    assert found.missing == ("there is no network",)
-    assert "graded all the same (--trusted)" in grade_page(found)
-
-
-# Workers that hang or die: what a value can do to the comparison
-
-
-@pytest.fixture
-def worker(tmp_path):
-    worker = grading._Worker(tmp_path / "worker", SEED, Limits(), False)
-    yield worker
-    worker.end()
-
-
-def test_a_comparison_that_hangs_or_ends_the_worker_costs_this_answer_alone(worker, folder):
-    task = Task("alice", "06", folder / "alice" / assignment_of("06").path.name, "06.1", "raw_score")
-    worker.give(task)
-    worker._deadline = 0.0
-    late = worker.result(is_ready=False)
-    assert (late.status, late.points) == ("wrong", 0)
-    assert "comparing this answer took too long" in late.sentence
-    worker.give(task)
-    worker._process.kill()
-    worker._process.join()
-    ended = worker.result(is_ready=worker.connection.poll(60))
-    assert "ended while it looked at this answer" in ended.sentence
-    worker.give(task)
-    assert worker.connection.poll(600)
-    assert worker.result(is_ready=True).status == "right"
-
-
-# The command
-
-
-def test_ctrl_c_leaves_no_process_and_no_folder_behind(tmp_path, folder):
-    class_, scratch = tmp_path / "class", tmp_path / "scratch"
-    scratch.mkdir()
-    handed_in(class_ / "eve_06.ipynb", "06", {"06.1": "def raw_score(hidden, alpha):\n    while True: pass\n"})
-    words = [sys.executable, "-P", "-m", "course_lib", "grade", str(class_), "--jobs", "1", "--call-seconds", "600"]
-    environment = os.environ | {"TMPDIR": str(scratch)}
-    with subprocess.Popen(words, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as process:
-        waited = time.monotonic() + 600
-        while not list(scratch.glob("*/worker-*/answer")):
-            assert process.poll() is None
-            assert time.monotonic() < waited
-            time.sleep(0.05)
-        process.send_signal(signal.SIGINT)
-        said = process.communicate(timeout=600)[0].decode()
-    assert process.returncode == 130, said
-    assert said.endswith("Stopped.\n")
-    assert not list(scratch.iterdir())
-    assert not [one for one in Path("/proc").glob("[0-9]*/cwd") if stands_in(one, scratch)]
-    assert not (tmp_path / "class-grades").exists()
-
-
-def stands_in(link: Path, folder: Path) -> bool:
-    try:
-        return os.readlink(link).startswith(str(folder))
-    except OSError:
-        return False
-
-
-def test_results_never_lie_among_the_submissions(tmp_path):
-    with pytest.raises(ValueError, match="among the submissions"):
-        command.results_folder(tmp_path, tmp_path / "out")
-    assert command.results_folder(tmp_path / "class", None) == tmp_path / "class-grades"
-
-
-@pytest.mark.parametrize("cell", ["=1+1", "+1", "-1", "@x", "\t=1", " =1", "\r=1"])
-def test_a_cell_that_would_be_a_formula_is_a_text(cell):
-    assert rows(written([[cell, "a=1", -1]]))[0] == ["'" + cell, "a=1", "-1"]
-
-
-def test_a_strangers_words_are_never_markup():
-    bad = "<script>alert(1)</script>\" onload='x'"
-    one = Graded(bad, "06", "06.1", "wrong", 0, 2, 0, 1, bad, (bad,), (bad,), bad)
-    results = Results(Collection((), (NotRead(bad, bad, bad),)), (assignment_of("06"),), (one,), 1)
-    page = Page(grade_page(results))
-    assert "script" not in [tag for tag, _ in page.tags]
-    assert not any("onload" in attributes for _, attributes in page.tags)
-    assert page.text.count(bad) >= 6
+def test_two_students_never_share_a_page():
+    taken: dict[str, str] = {}
+    names = [feedback_name(student, taken) for student in ("a/b", "a b", "A B", "../x", "")]
+    assert len({name.casefold() for name in names}) == 5
+    assert not any("/" in name or name.startswith(".") for name in names)

@@ -2,14 +2,17 @@
 
 import json
 import re
+import subprocess
+import sys
+import zipfile
 
 import pytest
 
 from course_lib.classroom import handout
 from course_lib.classroom.assignment_cells import read_assignments
-from course_lib.classroom.handout import MARKER, HandoutError, make_handout
+from course_lib.classroom.handout import MARKER, HandoutError, canary_of, make_handout
 from course_lib.classroom.leaks import LeakError, find_leaks, teachers_words
-from course_lib.classroom.nbgrader_course import canary_of
+from course_lib.lessons.kit.exercises import find_exercise
 
 SEED = 31_415_926_535
 TWO = read_assignments(["06", "P2"])
@@ -18,7 +21,7 @@ TWO = read_assignments(["06", "P2"])
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """A whole handout of a lesson and a project."""
-    return make_handout(tmp_path_factory.mktemp("class") / "handout", TWO, SEED, solved=True)
+    return make_handout(tmp_path_factory.mktemp("class") / "handout", TWO, SEED, solved=True, package=True)
 
 
 def contents(folder):
@@ -26,14 +29,11 @@ def contents(folder):
 
 
 def test_every_folder_says_what_it_is(made):
-    folders = [made, made / "student", made / "teacher"]
-    folders += [made / "teacher" / name for name in ("solutions", "rubric", "grading", "nbgrader", "solved")]
+    folders = [made, made / "student", made / "teacher", made / "teacher" / "nbgrader"]
     assert [folder.name for folder in folders if not (folder / "README.md").is_file()] == []
-    assert {path.name for path in made.iterdir()} == {"student", "teacher", "README.md", MARKER}
-    assert {path.name for path in (made / "teacher").iterdir()} == {
-        *(folder.name for folder in folders[3:]),
-        "README.md",
-    }
+    assert {path.name for path in made.iterdir()} == {"student", "teacher", "course.zip", "README.md", MARKER}
+    parts = {"solutions", "rubric", "grading", "nbgrader", "solved", "README.md"}
+    assert {path.name for path in (made / "teacher").iterdir()} == parts
 
 
 def test_the_teachers_folder_is_closed_to_others(made):
@@ -45,7 +45,7 @@ def test_everything_of_the_teachers_holds_the_canary_and_nothing_of_the_students
     canary = canary_of(SEED)
     assert find_leaks(made / "student", teachers_words(SEED, canary)) == []
     holding = [leak.split(" holds ")[0] for leak in find_leaks(made / "teacher", {"the canary": canary})]
-    own = {"solutions/06.py", "solutions/P2.py", "rubric/06.md", "rubric/P2.md", "grading/course_grading.py"}
+    own = {"solutions/06.py", "solutions/P2.py", "rubric/06.md", "rubric/P2.md", "grading/seed.json"}
     own |= {"nbgrader/source/06/06.ipynb", "nbgrader/source/P2/P2.ipynb", "solved/06_likelihood_and_weights.ipynb"}
     assert own <= set(holding)
     assert "the secret seed" in teachers_words(SEED, canary)
@@ -53,18 +53,18 @@ def test_everything_of_the_teachers_holds_the_canary_and_nothing_of_the_students
 
 
 def test_the_same_seed_makes_the_same_folder_and_another_one_other_tests(made, tmp_path):
-    again = contents(make_handout(tmp_path / "again", TWO, SEED, solved=True))
+    again = contents(make_handout(tmp_path / "again", TWO, SEED, solved=True, package=True))
     assert again == contents(made)
-    other = contents(make_handout(tmp_path / "other", TWO, SEED + 1, solved=True))
+    other = contents(make_handout(tmp_path / "other", TWO, SEED + 1, solved=True, package=True))
     differing = {name for name in again if again[name] != other[name]}
-    assert "teacher/grading/course_grading.py" in differing
+    assert "teacher/grading/seed.json" in differing
     assert all(name.startswith("teacher/") for name in differing)
     assert canary_of(SEED) != canary_of(SEED + 1)
 
 
 def test_the_seed_stands_in_the_graded_tests_alone(made):
     found = find_leaks(made, {"the secret seed": str(SEED)})
-    assert found == ["teacher/grading/course_grading.py holds the secret seed"]
+    assert found == ["teacher/grading/seed.json holds the secret seed"]
 
 
 def test_the_model_answers_run(made, capsys):
@@ -83,11 +83,36 @@ def test_the_rubric_has_every_exercise_with_its_points_and_mistakes(made):
         ("06.3", "core", "4"),
         ("06.4", "challenge", "6"),
     ]
-    assert "* Your alpha is always 0.1 m: use the argument." in page
+    assert f"* {find_exercise('06.1').known[0].hint}\n" in page
     assert page.count("**To talk about.** ") == 4
     project = (made / "teacher" / "rubric" / "P2.md").read_text(encoding="utf-8")
     assert "## P2, the score · 12 points" in project
     assert "better than the paper's method (0.309 m on the hidden seeds)" in project
+
+
+def test_the_package_for_students_works_and_holds_nothing_of_the_teachers(made, tmp_path):
+    with zipfile.ZipFile(made / "course.zip") as archive:
+        archive.extractall(tmp_path)
+    course = tmp_path / "course"
+    names = {str(path.relative_to(course)) for path in course.rglob("*")}
+    assert {
+        "course.py",
+        "course_lib/lessons/lesson_06/exercises.py",
+        "notebooks/06_likelihood_and_weights.ipynb",
+    } <= names
+    for gone in (
+        "tests",
+        "tools",
+        ".git",
+        ".ci",
+        "course_lib/classroom",
+        "notebooks/projects/solutions",
+        "TEACHING.md",
+    ):
+        assert gone not in names
+    ran = [subprocess.run([sys.executable, "-m", "course_lib", word], cwd=course, capture_output=True, check=False)
+           for word in ("--help", "grade")]  # fmt: skip
+    assert [one.returncode for one in ran] == [0, 1]
 
 
 def test_a_place_that_holds_something_else_is_refused_and_left_alone(tmp_path):
@@ -128,7 +153,7 @@ def test_submissions_and_grades_are_never_replaced(tmp_path):
 def test_a_leak_stops_it_and_the_old_folder_stays(tmp_path, monkeypatch):
     out = make_handout(tmp_path / "out", TWO[:1], SEED)
     before = contents(out)
-    monkeypatch.setattr(handout, "STUDENT_README", f"Dear students, {canary_of(SEED)}")
+    monkeypatch.setitem(handout.READMES, "student", "teacher.md")
     with pytest.raises(LeakError, match=r"HANDOUT\.md holds the canary"):
         make_handout(out, TWO, SEED)
     assert contents(out) == before

@@ -31,7 +31,7 @@ def test_the_files_function_is_scored_and_of_a_notebook_only_what_defines_is_run
 
 
 @pytest.mark.parametrize(
-    ("text", "words"), [("def locate(): ...\n", "no function localize()"), ("def localize(:\n", "SyntaxError")]
+    ("text", "words"), [("def locate(): ...\n", "no function localize()"), ("def localize(:\n", "is not Python")]
 )
 def test_a_file_that_does_not_fit_is_named(scored, tmp_path, capsys, text, words):
     (tmp_path / "P1.py").write_text(text)

@@ -83,15 +83,17 @@ class UnknownExerciseError(LookupError):
 def check(number: str, function: Callable) -> None:
     """Print whether `function` solves exercise `number`: not attempted, right, or not yet with a hint."""
     verdict = judge(find_exercise(number), function)
-    show_printed(verdict.printed)
-    print(f"{number}: {verdict.message}")
+    said, tries = "", 0
     if record_folder() is not None:
         try:
-            if said := record_check(number, verdict.status):
-                print(f"({said})")
+            said, tries = record_check(number, verdict.status)
         except OSError as error:
-            print(f"(not kept: {error})")
-        update_page()
+            said = f"not kept: {error}"
+    show_printed(verdict.printed)
+    print(f"{number}: {verdict.message}" + (f" (try {tries})" if tries else ""))
+    if said:
+        print(f"({said})")
+    update_page()
 
 
 def show_printed(text: str) -> None:

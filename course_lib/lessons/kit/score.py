@@ -4,7 +4,7 @@
                                                           (`course.py score P1 FILE`)
     python -m course_lib.lessons.kit.score P1 --store     writes data/projects/P1.json again
 
-In a notebook only imports, definitions and assignments run, so its checks, figures and scores do not.
+Only what the function needs runs (`kit.statements`); checks, figures and scores do not.
 """
 
 import argparse
@@ -16,8 +16,7 @@ from pathlib import Path
 import nbformat
 
 from course_lib.lessons.kit.projects import Project, UnknownProjectError, find_project, score, store_rivals
-
-DEFINING = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.ClassDef, ast.Assign, ast.AnnAssign)
+from course_lib.lessons.kit.statements import needed, read_statements
 
 
 def main(words: list[str]) -> int:
@@ -48,24 +47,24 @@ def handed_in(project: Project, path: Path) -> Callable:
         raise ValueError(f"{path} is neither a Python file nor a notebook")
     names: dict = {"__name__": "handed_in", "__file__": str(path)}
     try:
-        for text in [path.read_text(encoding="utf-8")] if path.suffix == ".py" else _definitions(path):
-            exec(compile(text, str(path), "exec"), names)
+        statements, problems = read_statements(cells_of(path))
+        for one in needed(statements, project.function):
+            exec(compile(ast.Module([one.node], []), f"{path}, {one.cell}", "exec"), names)
     except (Exception, SystemExit) as error:
         raise ValueError(f"{path} does not run: {type(error).__name__}: {error}") from error
+    if problems and not callable(names.get(project.function)):
+        raise ValueError(f"{path} does not run: {problems[0]}")
     if not callable(names.get(project.function)):
         raise ValueError(f"{path} defines no function {project.function}(), which {project.name} asks for")
     return names[project.function]
 
 
-def _definitions(path: Path) -> list[ast.Module]:
-    """Return the imports, definitions and assignments of each code cell of a notebook, without IPython's commands."""
-    cells = []
-    for cell in nbformat.read(path, as_version=4).cells:
-        if cell.cell_type == "code":
-            lines = ["pass" if line.startswith(("%", "!")) else line for line in cell.source.splitlines()]
-            nodes = [node for node in ast.parse("\n".join(lines)).body if isinstance(node, DEFINING)]
-            cells.append(ast.Module(nodes, type_ignores=[]))
-    return cells
+def cells_of(path: Path) -> list[tuple[str, str]]:
+    """Return the name and the source of each code cell. A Python file is one cell."""
+    if path.suffix == ".py":
+        return [("the file", path.read_text(encoding="utf-8-sig"))]
+    cells = nbformat.read(path, as_version=4).cells
+    return [(f"cell {n}", cell.source) for n, cell in enumerate(cells, 1) if cell.cell_type == "code"]
 
 
 if __name__ == "__main__":

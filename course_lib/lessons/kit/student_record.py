@@ -53,19 +53,22 @@ def record_prediction(lesson: str, index: int, text: str) -> str:
     return _change(lesson, lambda record: record["predictions"].update({str(index): text}))
 
 
-def record_check(number: str, status: str) -> str:
+def record_check(number: str, status: str) -> tuple[str, int]:
     """Keep the result of one check of exercise `number`. An exercise that was right once stays right.
 
-    Return a sentence if a damaged record was set aside, else "".
+    Return a sentence if a damaged record was set aside, else "", and the number of tries.
     """
+    tries = 0
 
     def count(record: dict) -> None:
         entry = record["checks"].setdefault(number, {"status": status, "attempts": 0})
         if status != "not attempted":
             entry["attempts"] += 1
             entry["status"] = "right" if entry["status"] == "right" else status
+        nonlocal tries
+        tries = entry["attempts"]
 
-    return _change(number.partition(".")[0], count)
+    return _change(number.partition(".")[0], count), tries
 
 
 def _change(lesson: str, change: Callable[[dict], None]) -> str:

@@ -4,6 +4,7 @@ import numpy as np
 
 from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.exercises import Exercise
+from course_lib.lessons.project_1.recordings import wall_ahead
 
 
 def initial_particles(state0, n):
@@ -98,16 +99,6 @@ def one_round(particles, measured, render, sigma, beta, noise, u):
     moved = propagate(particles, sigma, noise)
     w = particle_weights(likelihood(measured, render(moved), 0.1), beta)
     return estimate(moved, w), moved[resample(w, u)]
-
-
-def wall_ahead(states):
-    """Depth images (N, 3, 5) of a wall at x = 10 m and one at y = 2 m, from states (N, 6): stands for a renderer."""
-    states = np.atleast_2d(states)[:, :, None, None]
-    rays = np.arctan(np.tile(np.linspace(-0.4, 0.4, 5), (3, 1)))
-    with np.errstate(divide="ignore"):
-        front = (10 - states[:, 0]) / np.cos(states[:, 5] + rays)
-        side = (2 - states[:, 1]) / np.sin(states[:, 5] + rays)
-    return np.minimum(front, np.where(side > 0, side, np.inf)) * np.cos(rays)
 
 
 def a_frame(rng: np.random.Generator, spread: float = 1.0) -> tuple:

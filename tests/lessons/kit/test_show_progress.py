@@ -69,7 +69,7 @@ def test_a_check_and_a_prediction_bring_the_page_up_to_date_or_go_on_without_it(
     page.unlink()
     page.mkdir()  # so that it cannot be written
     check("06.1", right_06_1)
-    assert capsys.readouterr().out == "06.1: right.\n" * 2
+    assert capsys.readouterr().out == "06.1: right. (try 1)\n06.1: right. (try 2)\n"
     assert {path.name for path in record.parent.iterdir()} == {"progress.html", "record"}
 
 

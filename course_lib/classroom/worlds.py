@@ -14,13 +14,12 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from course_lib.classroom.points import SCORE_POINTS
 from course_lib.lessons.kit.projects import Project, Task, find_project, is_better, stored_rivals
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
-MAX_POINTS = 12
-"""Points of a project's score, beside those of its stages."""
 WORLDS = 8
 """Recordings or cameras that are drawn; rooms are all taken."""
 
@@ -61,10 +60,10 @@ def score_points(project: Project, values: Sequence[float]) -> float:
     """Points of a project's function that reached these values."""
     middle, line = float(np.median(values)), LINES[project.name].value
     if np.isfinite(middle) and not is_better(project, line, middle):
-        return float(MAX_POINTS)
+        return float(SCORE_POINTS)
     if np.isfinite(middle) and is_better(project, middle, paper_value(project)):
-        return MAX_POINTS / 2
-    return MAX_POINTS / 4 if np.isfinite(values).all() else 0.0
+        return SCORE_POINTS / 2
+    return SCORE_POINTS / 4 if np.isfinite(values).all() else 0.0
 
 
 def score_sentence(project: Project, values: Sequence[float], failed: int) -> str:

@@ -1,14 +1,11 @@
 """Worlds of a secret seed: as hard as the hidden ones, and no pose learned by heart fits; the points of a score."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 
-from course_lib.classroom.graded_tests import grade, grade_score
-from course_lib.classroom.model_answers import model_functions
-from course_lib.classroom.score_worlds import LINES, MAX_POINTS, graded_project, moved, paper_value, score_points
-from course_lib.lessons.kit.projects import Result, Task, find_project, outcomes, project_names
+from course_lib.classroom.points import SCORE_POINTS
+from course_lib.classroom.worlds import LINES, graded_project, moved, paper_value, score_points, score_sentence
+from course_lib.lessons.kit.projects import find_project, outcomes, project_names
 from course_lib.lessons.project_2.project import pose_cost
 
 
@@ -16,20 +13,22 @@ def test_every_project_has_a_line_between_the_papers_method_and_ours():
     assert list(LINES) == project_names()
     for name, line in LINES.items():
         project = find_project(name)
-        assert score_points(project, [line.value] * 3) == MAX_POINTS
-        assert score_points(project, [paper_value(project)] * 3) == MAX_POINTS / 4
+        assert score_points(project, [line.value] * 3) == SCORE_POINTS
+        assert score_points(project, [paper_value(project)] * 3) == SCORE_POINTS / 4
 
 
 def test_the_points_of_a_score():
     project = find_project("P1")
-    assert score_points(project, [10.0, 69.0, 200.0]) == MAX_POINTS
-    assert score_points(project, [10.0, 71.0, 200.0]) == MAX_POINTS / 2
-    assert score_points(project, [110.0, 120.0, 130.0]) == MAX_POINTS / 4
+    assert score_points(project, [10.0, 69.0, 200.0]) == SCORE_POINTS
+    assert score_points(project, [10.0, 71.0, 200.0]) == SCORE_POINTS / 2
+    assert score_points(project, [110.0, 120.0, 130.0]) == SCORE_POINTS / 4
     assert score_points(project, [110.0, 120.0, np.inf]) == 0
     assert score_points(project, [np.inf, np.inf, 10.0]) == 0
-    assert score_points(project, [10.0, 20.0, np.inf]) == MAX_POINTS, "a world that is lost is lost, the median counts"
-    assert score_points(find_project("P3"), [-1.0, 0.5, 2.0]) == MAX_POINTS
-    assert score_points(find_project("P3"), [-1.0, -0.5, 2.0]) == MAX_POINTS / 2
+    assert score_points(project, [10.0, 20.0, np.inf]) == SCORE_POINTS, (
+        "a world that is lost is lost, the median counts"
+    )
+    assert score_points(find_project("P3"), [-1.0, 0.5, 2.0]) == SCORE_POINTS
+    assert score_points(find_project("P3"), [-1.0, -0.5, 2.0]) == SCORE_POINTS / 2
 
 
 @pytest.mark.parametrize("name", ["P1", "P4"])
@@ -64,25 +63,8 @@ def test_a_pose_learned_by_heart_is_wrong_in_a_moved_room():
     assert max(box[0] for box in boxes) < task.arguments[0][3].width
 
 
-TOY = dataclasses.replace(
-    find_project("P4"), seeds=(1, 2, 3), prepare=lambda seed: Task((seed,), None), measure=lambda task, x: Result(x)
-)
-
-
 def test_the_feedback_of_a_score_tells_its_median_and_the_lines():
-    found = grade_score(TOY, lambda seed: 18.0 + seed)
-    assert found == (
-        12.0,
-        "median 20.0 mm over 3 other worlds (all points: below 20 mm; half: better than the paper's 49.1 mm).",
-    )
-    lost = grade_score(TOY, lambda seed: 30.0 if seed > 1 else 1 / 0)
-    assert lost.points == MAX_POINTS / 2
-    assert "it failed in 1 of 3 worlds" in lost.sentence
-
-
-@pytest.mark.slow
-def test_the_model_solution_has_all_points_and_the_paper_fewer():
-    project = find_project("P2")
-    assert grade("P2", model_functions("P2")["locate"], 4).points == MAX_POINTS
-    paper = next(rival.function for rival in project.rivals if rival.key == "paper")
-    assert grade("P2", paper, 4).points < MAX_POINTS
+    told = score_sentence(find_project("P4"), [19.0, 20.0, 21.0], 0)
+    lines = "(all points: below 20 mm; half: better than the paper's 49.1 mm)"
+    assert told == f"median 20.0 mm over 3 other worlds {lines}."
+    assert "it failed in 1 of 3 worlds" in score_sentence(find_project("P4"), [np.inf, 30.0, 30.0], 1)

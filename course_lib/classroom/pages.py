@@ -1,0 +1,86 @@
+"""What a grading writes: the teacher's page, a feedback page for each student, and tables for an LMS."""
+
+import csv
+import io
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from course_lib.classroom.grading import Entry, Results
+from course_lib.classroom.judge import failure_kind
+from course_lib.classroom.points import BY_HAND
+from course_lib.classroom.templates import template
+from course_lib.files import atomic_write
+from course_lib.lessons.kit.projects import project_names
+
+MARKS = {"right": "\u2713", "partly right": "\u00bd", "wrong": "\u2717", "not attempted": "\u2013"}
+"""A sign beside the word, so that a column can be skimmed."""
+FORMULA = re.compile(r"^[\s\u200b\ufeff]*[=+\-@\uff1d\ufe66\uff0b\uff0d\uff20\t\r]")
+"""A spreadsheet takes a cell that begins so for a formula; some take full-width signs too."""
+PLACE = re.compile(r"((?:cell \d+|the file), line \d+) (.*)")
+
+
+def places(entry: Entry) -> list[str]:
+    """Return which statements of a notebook failed and how, without a word of the student's own making."""
+    remarks = [PLACE.match(remark) for one in entry.judged.answers for remark in one.remarks]
+    return list(dict.fromkeys(f"{one[1]} {failure_kind(one[2])}" for one in remarks if one))
+
+
+def write_results(results: Results, out: Path) -> list[str]:
+    """Write all pages and tables into a folder and return their names."""
+    values = {"results": results, "marks": MARKS, "projects": project_names(), "by_hand": BY_HAND, "places": places}
+    atomic_write(out / "grades.html", template("grades.html").render(values))
+    tables = {"totals.csv": totals(results), "answers.csv": answers(results)}
+    for name, rows in tables.items():
+        atomic_write(out / name, written(rows))
+    (out / "feedback").mkdir(exist_ok=True)
+    taken: dict[str, str] = {}
+    for student in results.students:
+        name = feedback_name(student, taken)
+        page = template("feedback.html").render(values | {"student": student})
+        atomic_write(out / "feedback" / name, page)
+    return ["grades.html", *tables, "feedback/"]
+
+
+def feedback_name(student: str, taken: dict[str, str]) -> str:
+    """Return a file name for a student's page that no other student has."""
+    plain = re.sub(r"[^\w.@-]+", "_", student).strip("._")[:80] or "student"
+    name = next(
+        n for k in range(1000) if taken.setdefault((n := f"{plain}-{k}" if k else plain).casefold(), student) == student
+    )
+    return f"{name}.html"
+
+
+def totals(results: Results) -> Iterable[Sequence[object]]:
+    """Yield a row for each student: the roster's columns as they were, points of each lesson, and their sum."""
+    lessons = results.lessons
+    most = [results.most(lesson) for lesson in lessons]
+    columns = [name for name in results.roster.columns if name]
+    told = [f"{lesson} (of {of})" for lesson, of in zip(lessons, most, strict=True)]
+    yield ["student", *columns, *told, f"sum (of {sum(most)})", "handed in"]
+    for student in results.students:
+        row = results.roster.rows.get(student, {})
+        points = [results.points(student, lesson) for lesson in lessons]
+        shown = ["" if one is None else f"{one:g}" for one in points]
+        handed_in = "yes" if results.of(student) else "no"
+        yield [student, *(row.get(name, "") for name in columns), *shown, f"{sum(p or 0 for p in points):g}", handed_in]
+
+
+def answers(results: Results) -> Iterable[Sequence[object]]:
+    """Yield a row for each student and exercise."""
+    yield ["student", "exercise", "status", "points", "of", "inputs right", "inputs", "tries", "what was said", "file"]
+    for student in results.students:
+        for entry in results.of(student):
+            for one in entry.judged.answers:
+                inputs, tries = [one.right_inputs, one.inputs], entry.judged.tries.get(one.number, "")
+                said = [f"{one.points:g}", one.most, *inputs, tries, one.sentence, entry.name]
+                yield [student, one.number, one.status, *said]
+
+
+def written(rows: Iterable[Sequence[object]]) -> str:
+    """Return rows as CSV with a byte order mark, every text quoted; an apostrophe stands before a formula's sign."""
+    text = io.StringIO()
+    writer = csv.writer(text, quoting=csv.QUOTE_ALL, lineterminator="\r\n")
+    for row in rows:
+        writer.writerow([f"'{cell}" if isinstance(cell, str) and FORMULA.match(cell) else cell for cell in row])
+    return "\ufeff" + text.getvalue()

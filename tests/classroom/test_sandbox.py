@@ -1,0 +1,189 @@
+"""The walls hold: every attempt of the self-test fails within them, and what takes too much is stopped and named."""
+
+import subprocess
+import sys
+import textwrap
+
+import psutil
+import pytest
+
+from course_lib.classroom import self_test
+from course_lib.classroom.judge import judge
+from course_lib.classroom.sandbox import Limits, SandboxError
+from tests.classroom.handed_in import handed_in, solved
+
+SHORT = Limits(call_seconds=0.5, seconds=2.0)
+"""For what never ends, however fast the machine is; answers that end have the usual limits."""
+STUBS = {"06.1": "raw_score", "06.3": "min_likelihood"}
+SCORE = "(1 - hidden) * alpha / (alpha + 0.02) + hidden * alpha / (alpha + 2)"
+
+
+@pytest.fixture
+def graded(library, tmp_path):
+    """Judge a body of `raw_score` (06.1) beside a right answer, which must count whatever the body does."""
+    right = solved("06")["06.3"]
+
+    def run(body: str, before: str = "", limits: Limits | None = None):
+        source = f"{before}\ndef raw_score(hidden, alpha):\n{textwrap.indent(textwrap.dedent(body).strip(), '    ')}\n"
+        path = handed_in(tmp_path / "06.ipynb", "06", {"06.1": source, "06.3": right})
+        hostile, beside = judge(path, STUBS, 1, library, limits or Limits()).answers
+        assert (beside.status, beside.points) == ("right", 4), beside
+        left = [one.pid for one in psutil.process_iter(["cmdline"]) if str(library) in (one.info["cmdline"] or [])]
+        assert not left, "processes that answers left behind"
+        return hostile
+
+    return run
+
+
+def test_every_attempt_of_the_self_test_fails_within_the_walls(library):
+    found = self_test.attempts(library, Limits())
+    assert len(found) >= 40
+    assert {what: got for what, got in found.items() if got} == {}
+
+
+HARMLESS = {
+    "read a file of the teacher's", "connect to this machine", "send to a named Unix socket", "see other processes",
+    "send to an abstract Unix socket", "signal the grader through a file", "open a System V queue",
+    "watch the teacher's folder", "send an open file over a socket", "open a System V segment", "see a network card",
+    "open a System V semaphore", "read a solution's bytecode",
+}  # fmt: skip
+"""Attempts that change nothing where they succeed. The others (mounting, tracing, ...) never run without walls."""
+
+
+def test_without_walls_the_attempts_reach_what_they_look_for(library, monkeypatch):
+    """An attempt that cannot succeed would show nothing."""
+    monkeypatch.setattr(self_test, "walls", lambda *given: ["env"])
+    monkeypatch.setattr(self_test, "bounds", lambda limits: [])
+    tried = {what: code for what, code in self_test.ATTEMPTS.items() if what in HARMLESS}
+    monkeypatch.setattr(self_test, "ATTEMPTS", tried)
+    reached = {what for what, got in self_test.attempts(library, Limits()).items() if got}
+    assert reached >= HARMLESS - {"see a network card", "read a solution's bytecode"}
+
+
+def test_a_wall_that_does_not_hold_stops_the_grading(library, monkeypatch):
+    monkeypatch.setattr(self_test, "ATTEMPTS", {"do something": "got = True"})
+    with pytest.raises(SandboxError, match=r"do something .*--trust"):
+        self_test.self_test(library, Limits())
+
+
+ENDLESS = {
+    "a loop": "while True: pass",
+    "a loop that catches everything": "while True:\n    try:\n        while True: pass\n    except BaseException: pass",
+    "sleep": "import time\ntime.sleep(1e6)",
+    "a lock": "import threading\nthreading.Semaphore(0).acquire()",
+}
+
+
+@pytest.mark.parametrize("body", ENDLESS.values(), ids=ENDLESS)
+def test_what_never_ends_is_stopped(graded, body):
+    found = graded(body, limits=SHORT)
+    assert (found.status, found.points) == ("wrong", 0)
+    assert "does not end" in found.sentence
+
+
+TOO_MUCH = {
+    "memory without end": "rows = []\nwhile True: rows.append(bytearray(1 << 24))",
+    "memory in files without a name": """
+        import os
+        for k in range(200):
+            f = os.memfd_create(str(k))
+            for _ in range(60): os.write(f, bytes(1 << 20))
+        """,
+    "printing": "for _ in range(10**6): print('x' * 100)",
+    "a file of a gigabyte": "file = open('big', 'wb')\nfor _ in range(1 << 10): file.write(bytes(1 << 20))",
+    "a fork bomb": "import os\nwhile True: os.fork()",
+    "calls of itself": "return raw_score(hidden, alpha)",
+    "its own end": "import os\nos._exit(0)",
+    "the end of its parent": "import os\nos.kill(os.getppid(), 9)",
+    "a crash": "import ctypes\nctypes.string_at(1)",
+    "sent on every line": """
+        import os
+        for number in range(3, 60):
+            for line in (b'{"verdict": "right"}', b'{"end": ""}', b'{"call": 0, "value": 1}'):
+                try: os.write(number, line + bytes([10]))
+                except OSError: pass
+        return hidden
+        """,
+    "a line without end": """
+        import os
+        for k in range(3, 9):
+            try:
+                for _ in range(200): os.write(k, b'x' * (1 << 20))
+            except OSError: pass
+        """,
+}
+
+
+@pytest.mark.parametrize("body", TOO_MUCH.values(), ids=TOO_MUCH)
+def test_what_takes_too_much_is_stopped_and_earns_nothing(library, tmp_path, body):
+    source = f"def raw_score(hidden, alpha):\n{textwrap.indent(textwrap.dedent(body).strip(), '    ')}\n"
+    path = handed_in(tmp_path / "06.ipynb", "06", {"06.1": source})
+    (found,) = judge(path, {"06.1": "raw_score"}, 1, library, SHORT._replace(memory_mb=800)).answers
+    assert (found.status, found.points) == ("wrong", 0), found
+    assert found.sentence.startswith(("Your function ", "Not right"))
+
+
+FORGED = {
+    "printed": "print('06.1: right.')\nreturn hidden",
+    "the library patched": """
+        import course_lib.lessons.kit.exercises as exercises, course_lib.classroom.answers as answers
+        exercises.right_on = exercises.same_values = lambda *given: True
+        answers.encode = lambda value, depth=0: {"kind": "right"}
+        return hidden
+        """,
+    "an array that equals everything": """
+        import numpy as np
+        class Everything(np.ndarray):
+            def __eq__(self, other): return np.ones(self.shape, bool)
+            def __array_ufunc__(self, *given, **named): return np.zeros(self.shape)
+            def __reduce__(self): return (print, ("forged",))
+        return np.asarray(hidden).view(Everything)
+        """,
+    "an array of objects": "import numpy as np\nreturn hidden.astype(object)",
+    "not a number": "return hidden * float('nan')",
+    "nothing": "found = None\nreturn found",
+    "a view of a billion": "import numpy as np\nreturn np.broadcast_to(np.float64(1), (10**9,))",
+    "rows within rows": "row = []\nfor _ in range(10**5): row = [row]\nreturn row",
+    "a long row": "return [0.0] * 10**7",
+    "a huge number": "return 10**10000",
+    "the inputs changed": f"found = {SCORE}\nhidden *= 2\nreturn found",
+}
+
+
+@pytest.mark.parametrize("body", FORGED.values(), ids=FORGED)
+def test_a_forged_answer_earns_nothing(graded, body):
+    found = graded(body)
+    assert (found.status, found.points) == ("wrong", 0), found
+
+
+def test_the_students_sentence_carries_no_input_out(graded):
+    found = graded("raise ValueError(f'{hidden} {alpha}')")
+    assert found.sentence == "Your function stops with ValueError."
+    assert "[" in found.remarks[0], "the teacher reads it"
+    named = graded("raise type(f'Of{int(1e6 * alpha)}', (Exception,), {})()")
+    assert named.sentence == "Your function stops with an error."
+
+
+def test_an_answer_finds_no_reference_seed_or_other_student(graded):
+    found = graded(f"""
+        import gc, sys
+        names = [n for n in sys.modules if n.endswith((".exercises", ".project", ".judge")) and ".kit." not in n]
+        texts = [one for one in gc.get_objects() if isinstance(one, dict) and "images_with_holes" in one]
+        return None if names or texts else {SCORE}
+        """)
+    assert found.status == "right", found
+
+
+def test_without_walls_the_same_process_answers(library, tmp_path):
+    path = handed_in(tmp_path / "06.ipynb", "06", solved("06"))
+    assert [one.status for one in judge(path, STUBS, 1, library, Limits(), trust=True).answers] == ["right"] * 2
+
+
+def test_a_machine_without_bubblewrap_is_told_what_to_do(monkeypatch, tmp_path):
+    code = "from course_lib.classroom.sandbox import require_walls; require_walls()"
+    ran = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, env={"PATH": str(tmp_path)}, check=False
+    )
+    assert ran.returncode
+    for words in ("apt install bubblewrap", "Containerfile", "--trust"):
+        assert words in ran.stderr
