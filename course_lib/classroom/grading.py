@@ -90,6 +90,9 @@ class Results:
         given = self.by_hand.get((student, lesson))
         return sum(a.points for a in answers) + (given or 0) if answers or given is not None else None
 
+    def total(self, student: str) -> float:
+        return sum(self.points(student, lesson) or 0 for lesson in self.lessons)
+
     def same_shape(self) -> list[tuple[str, list[str]]]:
         """Return (exercise, students) of answers that are the same but for names, if they are long enough to tell."""
         found: dict[tuple[str, str], set[str]] = {}

@@ -63,7 +63,7 @@ def totals(results: Results) -> Iterable[Sequence[object]]:
         points = [results.points(student, lesson) for lesson in lessons]
         shown = ["" if one is None else f"{one:g}" for one in points]
         handed_in = "yes" if results.of(student) else "no"
-        yield [student, *(row.get(name, "") for name in columns), *shown, f"{sum(p or 0 for p in points):g}", handed_in]
+        yield [student, *(row.get(name, "") for name in columns), *shown, f"{results.total(student):g}", handed_in]
 
 
 def answers(results: Results) -> Iterable[Sequence[object]]:

@@ -94,7 +94,8 @@ def require_walls() -> None:
     """Raise `SandboxError` unless bubblewrap is here and may make its namespaces."""
     if sys.platform != "linux" or shutil.which("bwrap") is None:
         raise SandboxError(f"{platform.system()} has no bwrap here: {HOW_TO}")
-    tried = subprocess.run([*walls(Limits()), "true"], capture_output=True, text=True, check=False)
+    command = [*walls(Limits()), *bounds(Limits()), "sh", "-c", "true & wait"]
+    tried = subprocess.run(command, capture_output=True, text=True, check=False)
     if tried.returncode:
         raise SandboxError(f"bubblewrap does not start ({one_line(tried.stderr, 200)}): {HOW_TO}")
 
