@@ -1,7 +1,7 @@
 """Code that only the notebooks use: each lesson's figures, panel and exercises, and the tools in `kit/`.
 
 Several lessons share `kit/`. `predictions` asks for predictions and prints them again beside the results. `exercises`
-checks answers, and `projects` scores projects. `student_record` keeps predictions and results, `lesson_progress` counts
+checks answers, `projects` scores projects, and `statements` says what of a notebook an answer needs. `student_record` keeps predictions and results, `lesson_progress` counts
 them, and `show_progress` shows the counts. `display` shows a figure and `scene` a 3D scene. `panel`, `live_figure` and
 `progress_bar` are the moving parts. `intervals` prints medians and shares with their intervals. `room_photographs`,
 `panorama_features`, `room_observations` and `corridor_views` load the data of several lessons. The methods are not

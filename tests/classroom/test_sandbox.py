@@ -10,6 +10,7 @@ import pytest
 from course_lib.classroom import self_test
 from course_lib.classroom.judge import judge
 from course_lib.classroom.sandbox import Limits, SandboxError
+from course_lib.paths import REPOSITORY
 from tests.classroom.handed_in import handed_in, solved
 
 SHORT = Limits(call_seconds=0.5, seconds=2.0)
@@ -38,6 +39,7 @@ def graded(library, tmp_path):
 def test_every_attempt_of_the_self_test_fails_within_the_walls(library):
     found = self_test.attempts(library, Limits())
     assert len(found) >= 40
+    assert f"{len(found)} ways through these walls" in (REPOSITORY / "TEACHING.md").read_text(encoding="utf-8")
     assert {what: got for what, got in found.items() if got} == {}
 
 
