@@ -166,6 +166,7 @@ def _answers(run: Run, wanted: int) -> tuple[list, list[str], list[str]]:
 
 def _ended_kind(ended: str) -> str:
     kinds = {"does not end": "does not end in time", "takes more": "takes too much memory", "crashes": "crashes"}
+    kinds["starts more"] = "starts too many processes"
     return next((kind for start, kind in kinds.items() if ended.startswith(start)), "ends before it has answered")
 
 

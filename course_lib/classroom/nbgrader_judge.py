@@ -1,5 +1,7 @@
 """What nbgrader does in our courses: the judge of `course.py grade` gives the points, and no cell runs in a kernel."""
 
+import atexit
+import contextlib
 import functools
 import json
 import os
@@ -60,18 +62,22 @@ class Judge(NbGraderPreprocessor):
 
 def judge_notebook(nb: NotebookNode, seed: int, trust: bool) -> Judged:
     """Judge one notebook, its exercises and a project's score."""
-    with temporary_folder() as folder, library_copy(folder) as library:
-        if not trust:
-            _tried()
+    library = _library(trust)
+    with temporary_folder() as folder:
         write_notebook(folder / "submission.ipynb", nb)
         return judge(folder / "submission.ipynb", function_names(), seed, library, Limits(), trust=trust, scores=True)
 
 
 @functools.cache
-def _tried() -> None:
-    require_walls()
-    with temporary_folder() as folder, library_copy(folder) as library:
+def _library(trust: bool) -> Path:
+    """Copy the library once for all notebooks of this process, and try the walls."""
+    stack = contextlib.ExitStack()
+    atexit.register(stack.close)
+    library = stack.enter_context(library_copy(stack.enter_context(temporary_folder())))
+    if not trust:
+        require_walls()
         self_test(library, Limits())
+    return library
 
 
 def configure(config: Config, course: Path) -> None:

@@ -5,6 +5,7 @@ solutions and without the hidden data; a folder of limited size; no network and 
 same process without walls.
 """
 
+import compileall
 import contextlib
 import os
 import pickle
@@ -86,6 +87,7 @@ def library_copy(folder: Path) -> Iterator[Path]:
         return out
 
     shutil.copytree(REPOSITORY / "course_lib", folder / "course_lib", ignore=left_out)
+    compileall.compile_dir(folder / "course_lib", quiet=2)  # once, not in every sandbox
     (folder / "data").symlink_to(REPOSITORY / "data")  # without walls; inside them it is a mount
     yield folder
 
@@ -192,11 +194,14 @@ class Sandbox:
         return load(line)
 
     def _watch(self) -> None:
-        """Kill all processes if they last too long or take too much memory together, also in files without a name."""
+        """Kill all processes if they last too long, are too many, or take too much memory together."""
         while not self._closed and self._process.poll() is None:
+            count, used = processes_and_memory(self._process.pid, 2 * self.limits.processes)
             if time.monotonic() > self._deadline:
                 self._ended = "does not end in time"
-            elif (used := memory_used(self._process.pid)) > self.limits.memory_mb << 20:
+            elif count > 2 * self.limits.processes:  # for root, whose processes the kernel does not limit
+                self._ended = f"starts more than {2 * self.limits.processes} processes"
+            elif used > self.limits.memory_mb << 20:
                 self._ended = f"takes more than {self.limits.memory_mb} MB ({used >> 20} MB)"
             if self._ended:
                 self._kill()
@@ -215,14 +220,18 @@ class Sandbox:
         self._process.wait()
 
 
-def memory_used(pid: int) -> int:
-    """Return the bytes that a process and all below it hold, in memory and in open files of memory."""
-    total = 0
+def processes_and_memory(pid: int, most: int) -> tuple[int, int]:
+    """Return how many processes there are below one, and the bytes that they hold in memory and in files of memory.
+
+    Of more than `most` processes the memory is not asked for.
+    """
+    total, found = 0, []
     with contextlib.suppress(psutil.Error):
-        for one in [psutil.Process(pid), *psutil.Process(pid).children(recursive=True)]:
-            with contextlib.suppress(psutil.Error, OSError):
-                total += one.memory_full_info().pss
-                for file in os.scandir(f"/proc/{one.pid}/fd"):
-                    if os.readlink(file.path).startswith(("/memfd:", "/tmp/", "/dev/shm")):
-                        total += os.stat(file.path).st_blocks * 512
-    return total
+        found = psutil.Process(pid).children(recursive=True)
+    for one in found if len(found) <= most else ():
+        with contextlib.suppress(psutil.Error, OSError):
+            total += one.memory_full_info().pss
+            for file in os.scandir(f"/proc/{one.pid}/fd"):
+                if os.readlink(file.path).startswith(("/memfd:", "/tmp/", "/dev/shm")):
+                    total += os.stat(file.path).st_blocks * 512
+    return len(found), total

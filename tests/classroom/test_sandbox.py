@@ -68,6 +68,12 @@ def test_a_wall_that_does_not_hold_stops_the_grading(library, monkeypatch):
         self_test.self_test(library, Limits())
 
 
+def few(bodies: dict[str, str]) -> list:
+    """Return the bodies; `course.py test` runs the first, and `test --all` the others too."""
+    first, *others = bodies.values()
+    return [first, *(pytest.param(body, marks=pytest.mark.slow) for body in others)]
+
+
 ENDLESS = {
     "a loop": "while True: pass",
     "a loop that catches everything": "while True:\n    try:\n        while True: pass\n    except BaseException: pass",
@@ -76,7 +82,7 @@ ENDLESS = {
 }
 
 
-@pytest.mark.parametrize("body", ENDLESS.values(), ids=ENDLESS)
+@pytest.mark.parametrize("body", few(ENDLESS), ids=ENDLESS)
 def test_what_never_ends_is_stopped(graded, body):
     found = graded(body, limits=SHORT)
     assert (found.status, found.points) == ("wrong", 0)
@@ -116,7 +122,7 @@ TOO_MUCH = {
 }
 
 
-@pytest.mark.parametrize("body", TOO_MUCH.values(), ids=TOO_MUCH)
+@pytest.mark.parametrize("body", few(TOO_MUCH), ids=TOO_MUCH)
 def test_what_takes_too_much_is_stopped_and_earns_nothing(library, tmp_path, body):
     source = f"def raw_score(hidden, alpha):\n{textwrap.indent(textwrap.dedent(body).strip(), '    ')}\n"
     path = handed_in(tmp_path / "06.ipynb", "06", {"06.1": source})
@@ -152,7 +158,7 @@ FORGED = {
 }
 
 
-@pytest.mark.parametrize("body", FORGED.values(), ids=FORGED)
+@pytest.mark.parametrize("body", few(FORGED), ids=FORGED)
 def test_a_forged_answer_earns_nothing(graded, body):
     found = graded(body)
     assert (found.status, found.points) == ("wrong", 0), found

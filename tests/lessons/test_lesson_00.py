@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.lesson_00 import mean_votes, moment, pose_panel
-from course_lib.lessons.lesson_00.exercises import BUDGET, Score, off_the_top
+from course_lib.lessons.lesson_00.exercises import off_the_top
+from course_lib.lessons.lesson_00.search import BUDGET, Score
 
 
 def test_the_panels_button_finds_the_truth_and_no_surface_loses_a_vote_without_a_step_back():
