@@ -74,7 +74,7 @@ def usage() -> str:
     for group, commands in GROUPS.items():
         lines += ["", f"{group}:", *(f"  {name:<13}  {line}" for name, (_, line) in commands.items())]
     lines += ["", "Options of one command: python3 course.py COMMAND --help"]
-    lines += ["The first call sets up .venv: a download of about 450 MB, 1.9 GB on disk, one or a few minutes."]
+    lines += ["The first call sets up .venv: a download of about 450 MB, 2.0 GB on disk, one or a few minutes."]
     return "\n".join(lines) + "\n"
 
 
