@@ -5,20 +5,30 @@ which is no number and therefore wrong. Arrays travel in NumPy's own file format
 """
 
 import base64
+import functools
 import io
 import json
+import re
 
 import numpy as np
 
 MAX_DEPTH = 8  # rows within rows
 MAX_ROW = 100_000  # values in one list or tuple
 MAX_TEXT = 10_000  # characters
-MAX_ARRAY = 32 << 20  # bytes
+MAX_ARRAY = 4 << 20  # bytes
+FORMULA = re.compile(r"^[\s\u200b\ufeff]*[=+\-@\uff1d\ufe66\uff0b\uff0d\uff20\t\r]")
+"""A spreadsheet takes a cell that begins so for a formula; some take full-width signs too."""
 KINDS = "biufc"  # of NumPy's types: numbers and booleans
 
 
 class Unreadable:
     """Stands for an answer that holds no numbers. Its class has the name of what was returned."""
+
+
+@functools.lru_cache(maxsize=100)
+def unreadable(name: str) -> type:
+    """Return the class that stands for values of this name."""
+    return type(name or "object", (Unreadable,), {})
 
 
 class AnswerFormatError(ValueError):
@@ -53,14 +63,14 @@ def decode(written: object, depth: int = 0) -> object:
         return written
     if type(written) is dict and len(written) <= 2 and depth <= MAX_DEPTH:
         for row in (tuple, list):
-            if type(parts := written.get(row.__name__)) is list:
+            if type(parts := written.get(row.__name__)) is list and len(parts) <= MAX_ROW:
                 return row(decode(part, depth + 1) for part in parts)
         if "ellipsis" in written:
             return ...
         if "array" in written:
             return _decode_array(written)
         if "kind" in written:
-            return type(one_line(written["kind"])[:60] or "object", (Unreadable,), {})()
+            return unreadable(one_line(written["kind"], 60))()
     raise AnswerFormatError("what is not in the format of answers")
 
 
@@ -88,3 +98,8 @@ def load(line: bytes) -> dict:
 def one_line(text: object, length: int = 600) -> str:
     """Return a stranger's text as one line without control characters."""
     return "".join(letter if letter.isprintable() else " " for letter in str(text)[: 2 * length]).strip()[:length]
+
+
+def harmless(cell: object) -> object:
+    """Return a cell that no spreadsheet takes for a formula: an apostrophe stands before its sign."""
+    return f"'{cell}" if isinstance(cell, str) and FORMULA.match(cell) else cell

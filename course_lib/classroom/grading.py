@@ -8,14 +8,17 @@ import csv
 import hashlib
 import json
 import multiprocessing
+import os
 import re
 import resource
+import stat
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from course_lib.classroom.answers import harmless
 from course_lib.classroom.assignment_cells import read_assignments
 from course_lib.classroom.judge import Judged, as_json, from_json, judge
 from course_lib.classroom.model_answers import function_name
@@ -171,14 +174,20 @@ def _all(found: list[Submission], judged: Path, settings: tuple, jobs: int) -> I
 
 def _one(one: Submission, judged: Path, settings: tuple) -> Entry:
     """Judge one submission in a process of its own, unless it was judged before."""
-    if one.path.stat().st_size > MAX_FILE:
-        return Entry(one, Judged(why=f"the file has more than {MAX_FILE >> 20} MB"))
-    content = one.path.read_bytes()
-    stubs, seed, _, limits, trust, scores = settings
-    key = repr((one.guess, seed, limits, trust, scores, sorted(stubs.items()), one.path.suffix)).encode()
-    path = judged / f"{hashlib.sha256(key + content).hexdigest()[:32]}.json"
+    try:
+        content = read_plain(one.path)
+    except OSError as error:
+        return Entry(one, Judged(why=f"the file cannot be read: {error.strerror or error}"))
+    stubs, seed, library, limits, trust, scores = settings
+    suffix = one.path.suffix.lower()
+    key = repr((one.guess, seed, limits, trust, scores, sorted(stubs.items()), suffix)).encode()
+    name = hashlib.sha256(key + content).hexdigest()[:32]
+    path = judged / f"{name}.json"
     if not path.is_file():
-        process = FORKS.Process(target=judge_to_file, args=(one, path, *settings))
+        copy = library / "handed_in" / name / f"submission{suffix}"  # what is judged is what was read
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        copy.write_bytes(content)
+        process = FORKS.Process(target=judge_to_file, args=(one._replace(path=copy), path, *settings))
         process.start()
         process.join(SCORE_SECONDS if scores else JUDGE_SECONDS)
         process.kill()
@@ -190,10 +199,20 @@ def _one(one: Submission, judged: Path, settings: tuple) -> Entry:
     return Entry(one, found, bool(CANARY.search(content)))
 
 
+def read_plain(path: Path) -> bytes:
+    """Return a plain file's content, whatever its name points to by now. Raises `OSError` for anything else."""
+    with os.fdopen(os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK), "rb") as file:
+        kind = os.fstat(file.fileno())
+        if not stat.S_ISREG(kind.st_mode) or kind.st_size > MAX_FILE:
+            raise OSError(f"it is no plain file of at most {MAX_FILE >> 20} MB")
+        return file.read(MAX_FILE)
+
+
 def judge_to_file(one: Submission, path: Path, stubs: dict, seed: int, library: Path, limits: Limits, trust: bool,
                   scores: bool) -> None:  # fmt: skip
     """Judge one submission and write the result. The process may take so much time and memory, and no more."""
-    resource.setrlimit(resource.RLIMIT_AS, (JUDGE_MEMORY_MB << 20,) * 2)
+    # The soft limit alone, because the sandbox sets its own limits, which may be higher.
+    resource.setrlimit(resource.RLIMIT_AS, (JUDGE_MEMORY_MB << 20, resource.getrlimit(resource.RLIMIT_AS)[1]))
     judged = judge(one.path, stubs, seed, library, limits, one.guess, trust, scores)
     atomic_write(path, json.dumps(as_json(judged)))
 
@@ -203,13 +222,20 @@ def _one_for_each(entries: list[Entry]) -> tuple[list[Entry], list[NotRead]]:
     not_read = [NotRead(e.student, e.name, e.judged.why) for e in entries if e.judged.why]
     read = [e for e in entries if not e.judged.why]
     newest: dict[tuple[str, str], Entry] = {}
-    for entry in sorted(read, key=lambda e: (e.submission.path.stat().st_mtime_ns, e.name)):
+    for entry in sorted(read, key=lambda e: (modified(e.submission.path), e.name)):
         for lesson in entry.judged.lessons:
             if (old := newest.get((entry.student, lesson))) is not None and old.counts:
                 old.counts = False
                 not_read.append(NotRead(old.student, old.name, f"is older than {entry.name}, which counts"))
             newest[entry.student, lesson] = entry
     return read, not_read
+
+
+def modified(path: Path) -> int:
+    try:
+        return path.lstat().st_mtime_ns
+    except OSError:  # it has gone meanwhile
+        return 0
 
 
 def points_by_hand(path: Path, entries: list[Entry]) -> dict[tuple[str, str], float]:
@@ -220,6 +246,7 @@ def points_by_hand(path: Path, entries: list[Entry]) -> dict[tuple[str, str], fl
     rows = []
     if path.is_file():
         rows = list(csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines()))
+        rows = [{key: (value or "").removeprefix("'") for key, value in row.items() if key} for row in rows]
     known = {(row["student"], row["project"]) for row in rows}
     for one in entries:
         for lesson in one.judged.lessons if one.counts else ():
@@ -230,7 +257,7 @@ def points_by_hand(path: Path, entries: list[Entry]) -> dict[tuple[str, str], fl
     with open(path, "w", encoding="utf-8-sig", newline="") as file:
         writer = csv.DictWriter(file, ["student", "project", "points", "remark"])
         writer.writeheader()
-        writer.writerows(rows)
+        writer.writerows({key: harmless(value) for key, value in row.items()} for row in rows)
     given = {}
     for row in rows:
         if row["points"].strip():

@@ -33,7 +33,7 @@ MAX_FILE = 20 << 20  # bytes; a lesson with all its pictures has 0.4 MB
 MAX_SENTENCE = 500  # characters
 TRUSTED = ("numpy", "scipy", "course_lib", "matplotlib", "cv2", "math")
 """What the process imports before it forks, if the notebook imports it, because imports are slow."""
-TRY = re.compile(r"\(try (\d+)\)")
+TRY = re.compile(r"\(try (\d{1,4})\)")
 RECALLED = re.compile(r"^\d+\. (.*)\n   you said: (.*)\n   measured: (.*)$", re.MULTILINE)
 MIN_NODES = 40  # of a syntax tree: two students write a shorter answer alike by chance
 
@@ -134,7 +134,10 @@ def _printed(cell: dict) -> str:
 
 def digest(function: ast.FunctionDef) -> str:
     """Return a digest of a function's syntax tree without names of its own and docstring; "" for a short function."""
-    function = copy.deepcopy(function)
+    try:
+        function = ast.parse(ast.unparse(function)).body[0]  # a copy
+    except RecursionError:
+        return ""
     if ast.get_docstring(function) is not None:
         function.body = function.body[1:]
     nodes = list(ast.walk(function))
@@ -145,7 +148,10 @@ def digest(function: ast.FunctionDef) -> str:
         for field in ("arg", "id"):
             if (name := getattr(node, field, None)) in own:
                 setattr(node, field, order.setdefault(name, f"v{len(order)}"))
-    return hashlib.sha256(ast.dump(function).encode()).hexdigest()[:16] if len(nodes) >= MIN_NODES else ""
+    try:
+        return hashlib.sha256(ast.dump(function).encode()).hexdigest()[:16] if len(nodes) >= MIN_NODES else ""
+    except RecursionError:
+        return ""
 
 
 def prepare(statements: list[Statement]) -> None:

@@ -82,7 +82,11 @@ def judge(
     if not names:
         judged.why = "the file does not say which lesson it is: it has no exercise's cell and no exercise's function"
     for name in [name for name in names if scores and name in project_names()]:
-        judged.answers.append(judge_score(name, path, library, seed, limits, trust))
+        try:
+            judged.answers.append(judge_score(name, path, library, seed, limits, trust))
+        except AnswerFormatError as error:
+            said = "Your function could not be scored."
+            judged.answers.append(Graded(name, "wrong", 0, SCORE_POINTS, said, remarks=[f"its process {error}"]))
     return judged
 
 

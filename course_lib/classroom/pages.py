@@ -2,10 +2,12 @@
 
 import csv
 import io
+import itertools
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from course_lib.classroom.answers import harmless
 from course_lib.classroom.grading import Entry, Results
 from course_lib.classroom.judge import failure_kind
 from course_lib.classroom.points import BY_HAND
@@ -15,15 +17,14 @@ from course_lib.lessons.kit.projects import project_names
 
 MARKS = {"right": "\u2713", "partly right": "\u00bd", "wrong": "\u2717", "not attempted": "\u2013"}
 """A sign beside the word, so that a column can be skimmed."""
-FORMULA = re.compile(r"^[\s\u200b\ufeff]*[=+\-@\uff1d\ufe66\uff0b\uff0d\uff20\t\r]")
-"""A spreadsheet takes a cell that begins so for a formula; some take full-width signs too."""
-PLACE = re.compile(r"((?:cell \d+|the file), line \d+) (.*)")
+PLACE = re.compile(r"((?:cell \d{1,3}|the file), line \d{1,4}) (.*)")
+MAX_PLACES = 2  # on a student's page: a hostile answer can forge them, to carry an input out
 
 
 def places(entry: Entry) -> list[str]:
     """Return which statements of a notebook failed and how, without a word of the student's own making."""
     remarks = [PLACE.match(remark) for one in entry.judged.answers for remark in one.remarks]
-    return list(dict.fromkeys(f"{one[1]} {failure_kind(one[2])}" for one in remarks if one))
+    return list(dict.fromkeys(f"{one[1]} {failure_kind(one[2])}" for one in remarks if one))[:MAX_PLACES]
 
 
 def write_results(results: Results, out: Path) -> list[str]:
@@ -44,10 +45,11 @@ def write_results(results: Results, out: Path) -> list[str]:
 
 def feedback_name(student: str, taken: dict[str, str]) -> str:
     """Return a file name for a student's page that no other student has."""
-    plain = re.sub(r"[^\w.@-]+", "_", student).strip("._")[:80] or "student"
-    name = next(
-        n for k in range(1000) if taken.setdefault((n := f"{plain}-{k}" if k else plain).casefold(), student) == student
-    )
+    plain = re.sub(r"[^\w.@-]+", "_", student).strip("._")[:50] or "student"
+    for k in itertools.count():
+        name = f"{plain}-{k}" if k else plain
+        if taken.setdefault(name.casefold(), student) == student:
+            break
     return f"{name}.html"
 
 
@@ -82,5 +84,5 @@ def written(rows: Iterable[Sequence[object]]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, quoting=csv.QUOTE_ALL, lineterminator="\r\n")
     for row in rows:
-        writer.writerow([f"'{cell}" if isinstance(cell, str) and FORMULA.match(cell) else cell for cell in row])
+        writer.writerow([harmless(cell) for cell in row])
     return "\ufeff" + text.getvalue()

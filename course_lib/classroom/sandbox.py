@@ -42,11 +42,14 @@ ENVIRONMENT = {
 """All that the process finds in its environment."""
 START_SECONDS = 300.0  # until the file is read; only a fault takes so long
 LOOK_EVERY = 0.1  # seconds between two looks at memory
-MAX_LINE = 64 << 20  # bytes of one call's answer
+MAX_LINE = 16 << 20  # bytes of one call's answer; right answers have some kilobytes
+MAX_MESSAGES = 500  # of one answer
+ORDER_SECONDS = 30.0  # of one answer, beside its own time
+MIN_FREE = 0.05  # of the machine's memory: with less, what runs is stopped, whoever took it
 HOW_TO = (
-    "strangers' code is kept in by bubblewrap: install it (Debian, Ubuntu: apt install bubblewrap; Fedora: dnf install "
-    "bubblewrap), or grade in the container of course_lib/classroom/Containerfile. If you have read every file and "
-    "trust it, add --trust"
+    "strangers' code is kept in by bubblewrap 0.8 or newer. Install it (Debian, Ubuntu: apt install bubblewrap; "
+    "Fedora: dnf install bubblewrap), or grade in the container of course_lib/classroom/Containerfile. If you have "
+    "read every file and trust it, add --trust"
 )
 
 
@@ -104,8 +107,8 @@ def require_walls() -> None:
 
 def walls(limits: Limits, library: Path | None = None, submission: Path | None = None) -> list[str]:
     """Return the command that runs another one within walls."""
-    command = ["bwrap", "--unshare-all", "--die-with-parent", "--new-session", "--cap-drop", "ALL"]
-    command += ["--uid", "65534", "--gid", "65534", "--hostname", "grading", "--clearenv"]
+    command = ["bwrap", "--unshare-all", "--unshare-user", "--disable-userns", "--die-with-parent", "--new-session"]
+    command += ["--cap-drop", "ALL", "--uid", "65534", "--gid", "65534", "--hostname", "grading", "--clearenv"]
     for name, value in ENVIRONMENT.items():
         command += ["--setenv", name, value]
     size = str(limits.folder_mb << 20)
@@ -167,12 +170,14 @@ class Sandbox:
     def run(self, number: str, function: str, arguments: bytes, forbidden: tuple[str, ...] = ()) -> Run:
         """Run one answer on a pickle of its arguments."""
         order = pickle.dumps((number, function, arguments, forbidden))
-        self._deadline = time.monotonic() + self.limits.seconds + START_SECONDS
-        head, calls = {}, []
+        self._deadline = time.monotonic() + self.limits.seconds + ORDER_SECONDS
+        head, calls, count = {}, [], 0
         try:
             self._process.stdin.write(struct.pack("=Q", len(order)) + order)
             self._process.stdin.flush()
             while "end" not in (message := self._line()):
+                if (count := count + 1) > MAX_MESSAGES:
+                    raise AnswerFormatError("sends more messages than there are calls")
                 if "call" in message:
                     calls.append(message)
                 else:
@@ -201,6 +206,8 @@ class Sandbox:
                 self._ended = "does not end in time"
             elif count > 2 * self.limits.processes:  # for root, whose processes the kernel does not limit
                 self._ended = f"starts more than {2 * self.limits.processes} processes"
+            elif (memory := psutil.virtual_memory()).available < MIN_FREE * memory.total:
+                self._ended = "takes more memory than there is"
             elif used > self.limits.memory_mb << 20:
                 self._ended = f"takes more than {self.limits.memory_mb} MB ({used >> 20} MB)"
             if self._ended:

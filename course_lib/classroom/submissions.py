@@ -16,11 +16,13 @@ import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 MAX_FILES = 20_000
+MAX_DEPTH = 20  # folders within folders
 READ = (".ipynb", ".py")
 ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".7z", ".rar", ".bz2", ".xz")
-MOODLE = re.compile(r"^(?P<name>.+?)_(?P<id>\d+)_assignsubmission_\w+?_?$")
+MOODLE = re.compile(r"^(?P<name>.+)_(?P<id>\d+)_assignsubmission_\w+?_?$")
 CANVAS = re.compile(r"^(?P<name>[^\W\d_]+?)_(?:LATE_)?(?P<id>\d+)_\d+_(?P<rest>.+)$")
 VERSION = re.compile(r"(?:[ _-]*\(\d+\)|[ _-]+v?\d{1,2}|[ _-]+(?:final|copy|copie|kopie|late))+$", re.IGNORECASE)
 DATE = re.compile(r"[ _-]*(?:19|20)\d\d[-_.]?\d\d[-_.]?\d\d(?:[T_-]\d{4,6})?")
@@ -33,8 +35,7 @@ class SubmissionError(ValueError):
     """A folder or a roster that cannot be read; the message says why."""
 
 
-@dataclass(frozen=True, order=True)
-class Submission:
+class Submission(NamedTuple):
     """One file that is graded. guess: the lesson that its name says, or ""."""
 
     student: str
@@ -93,7 +94,8 @@ def files_in(folder: Path) -> list[Path]:
     """Return all files in a folder and below, without hidden ones. Links stand for themselves."""
     found = []
     for place, folders, names in os.walk(folder):
-        folders[:] = sorted(name for name in folders if not name.startswith((".", "__")))
+        deep = len(Path(place).relative_to(folder).parts) >= MAX_DEPTH
+        folders[:] = [] if deep else sorted(name for name in folders if not name.startswith((".", "__")))
         links = [name for name in folders if (Path(place) / name).is_symlink()]
         found += [Path(place) / name for name in sorted([*names, *links]) if not name.startswith(".")]
         if len(found) > MAX_FILES:
@@ -103,7 +105,10 @@ def files_in(folder: Path) -> list[Path]:
 
 def refused(path: Path) -> str:
     """Return why a file is not read, or ""."""
-    mode = path.lstat().st_mode
+    try:
+        mode = path.lstat().st_mode
+    except OSError as error:
+        return f"cannot be looked at: {error.strerror}"
     if stat.S_ISLNK(mode):
         return "is a link: links are not followed"
     if not stat.S_ISREG(mode):
@@ -118,7 +123,7 @@ def whose(relative: Path, lessons: dict[str, str], roster: Roster) -> tuple[str,
     stem = shown(relative.name.removesuffix(relative.suffix))
     folders = [shown(part) for part in relative.parts[:-1]]
     names, rest = [], stem
-    for part in (folders[0] if folders else "", stem):
+    for part in (folders[0] if folders else stem,):
         if match := MOODLE.match(part) or CANVAS.match(part):
             names, rest = [match["id"], match["name"]], match.groupdict().get("rest", stem)
             break

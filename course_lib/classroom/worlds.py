@@ -4,7 +4,7 @@ P1 and P4: recordings and cameras of other seeds. P2 and P3: the hidden rooms, e
 shifted, and seen by a rig that is turned. Distances and angles between things stay, so that every method reaches there
 nearly what it reaches in the hidden rooms; a pose learned by heart is wrong.
 
-Points: all where the median is at least as good as the project's line, half where it is better than the paper's
+Points: all where the median is better than the project's line, half where it is better than the paper's
 method, a quarter where the function runs in every world. Source of the lines: the rubrics in notebooks/projects.
 """
 
@@ -59,7 +59,7 @@ def paper_value(project: Project) -> float:
 def score_points(project: Project, values: Sequence[float]) -> float:
     """Points of a project's function that reached these values."""
     middle, line = float(np.median(values)), LINES[project.name].value
-    if np.isfinite(middle) and not is_better(project, line, middle):
+    if np.isfinite(middle) and is_better(project, middle, line):
         return float(SCORE_POINTS)
     if np.isfinite(middle) and is_better(project, middle, paper_value(project)):
         return SCORE_POINTS / 2

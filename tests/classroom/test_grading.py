@@ -146,6 +146,16 @@ def test_no_cell_is_a_formula_and_every_text_is_quoted(cell):
 
 def test_two_students_never_share_a_page():
     taken: dict[str, str] = {}
-    names = [feedback_name(student, taken) for student in ("a/b", "a b", "A B", "../x", "")]
-    assert len({name.casefold() for name in names}) == 5
+    names = [feedback_name(student, taken) for student in ("a/b", "a b", "A B", "../x", "", "\U00020000" * 200)]
+    assert len({name.casefold() for name in names}) == 6
+    assert max(len(name.encode()) for name in names) <= 255
     assert not any("/" in name or name.startswith(".") for name in names)
+
+
+def test_what_is_judged_is_a_plain_file_as_it_was_read(tmp_path):
+    (tmp_path / "link.py").symlink_to(__file__)
+    os.mkfifo(tmp_path / "pipe.py")
+    for name in ("link.py", "pipe.py", "gone.py"):
+        with pytest.raises(OSError, match="plain file|symbolic|No such"):
+            grading.read_plain(tmp_path / name)
+    assert grading.read_plain(__file__).startswith(b'"""A folder')

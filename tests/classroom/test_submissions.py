@@ -31,6 +31,8 @@ LESSONS = {
         ("doealice_12345_67890_homework.ipynb", "doealice", ""),
         ("doealice_LATE_12345_67890_06_likelihood_and_weights-1.ipynb", "doealice", "06"),
         ("bob-jones/week 3/06.ipynb", "bob-jones", "06"),
+        ("eve/bob_1_1_06.py", "eve", "06"),
+        ("eve/bob_777_assignsubmission_file_.py", "eve", ""),
         ("06_likelihood_and_weights_carol.ipynb", "carol", "06"),
     ],
 )
@@ -90,3 +92,11 @@ def test_what_is_not_read_is_named_and_links_are_not_followed(tmp_path):
     for folder in (tmp_path / "none", tmp_path / "alice" / "06.ipynb"):
         with pytest.raises(SubmissionError, match="not a folder"):
             collect(folder, LESSONS)
+
+
+def test_folders_without_end_are_read_to_a_bound(tmp_path):
+    deep = tmp_path.joinpath(*"a" * 60)
+    deep.mkdir(parents=True)
+    (deep / "06.ipynb").write_text("{}")
+    (tmp_path / "bob_06.ipynb").write_text("{}")
+    assert [one.student for one in collect(tmp_path, LESSONS)[0]] == ["bob"]

@@ -13,7 +13,9 @@ def test_every_project_has_a_line_between_the_papers_method_and_ours():
     assert list(LINES) == project_names()
     for name, line in LINES.items():
         project = find_project(name)
-        assert score_points(project, [line.value] * 3) == SCORE_POINTS
+        better = line.value + (1e-3 if project.better == "higher" else -1e-3)
+        assert score_points(project, [better] * 3) == SCORE_POINTS
+        assert score_points(project, [line.value] * 3) == SCORE_POINTS / 2
         assert score_points(project, [paper_value(project)] * 3) == SCORE_POINTS / 4
 
 
