@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.kit.projects import AnswerError, one_outcome
-from course_lib.lessons.project_2.project import room_of
+from course_lib.lessons.project_2.rooms import room_of
 from course_lib.lessons.project_3.project import DRAWS, PROJECT, checked_pairs, measure, points_of, prepare
 
 BAD = {"neither None": 3, "observation twice": [(0, 1), (0, 2)], "landmark twice": [(0, 1), (1, 1)]}

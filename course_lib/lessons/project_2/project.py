@@ -1,15 +1,12 @@
 """Project P2: from the boxes of two images to a pose; scored by how far the rig's poses are off in hidden rooms."""
 
-from collections import namedtuple
-
 import numpy as np
 
 from course_lib.beyond.look_alikes.matchers import matcher
 from course_lib.lessons.kit.projects import AnswerError, Project, Result, Rival, Task
 from course_lib.lessons.kit.values import as_numbers
 from course_lib.lessons.project_2.exercises import angles_of, pair_boxes, rotation
-from course_lib.lessons.project_2.rooms import SEEDS, ProjectRoom, project_rooms
-from course_lib.paths import data_path
+from course_lib.lessons.project_2.rooms import SEEDS, Rig, room_of
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
 
@@ -17,22 +14,6 @@ MAX_COST = 2.0  # metres: a pose that is farther off costs no more
 NO_ANSWER = 1.0  # metres: the cost of no answer
 CORRECT = 0.5  # metres: an answer that costs no more is called correct
 MAX_GAP = 0.1  # radians between the azimuths of two boxes of one object, as the library's triangulation asks
-
-# Two spherical cameras, one `baseline` [m] above the other, and the size of their images, pixels.
-Rig = namedtuple("Rig", "baseline width height")
-
-
-def rooms_of(name: str) -> tuple[ProjectRoom, ...]:
-    """Return the "practice" rooms, or the "hidden" ones."""
-    return project_rooms(data_path(f"projects/rooms_{name}.json"))
-
-
-def room_of(seed: int) -> ProjectRoom:
-    """Return a room by its seed. Raises `ValueError`, which names the practice rooms, if there is none."""
-    rooms = {room.seed: room for name in SEEDS for room in rooms_of(name)}
-    if seed not in rooms:
-        raise ValueError(f"there is no room of seed {seed}; the practice rooms are {str(SEEDS['practice'])[1:-1]}")
-    return rooms[seed]
 
 
 def prepare(seed: int) -> Task:

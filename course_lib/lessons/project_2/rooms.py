@@ -15,6 +15,7 @@ from course_lib.experiments import observed_rooms
 from course_lib.experiments.room import localize_pair
 from course_lib.experiments.runner import kept_rows
 from course_lib.files import atomic_write
+from course_lib.paths import data_path
 from course_lib.simulation.room.look_alike_recording import RecordingModels, surveyed_room
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.detection.detector import YoloDetector
@@ -30,6 +31,8 @@ POSES = 4  # at each of the paper's two heights
 ProjectView = namedtuple("ProjectView", "upper lower observations shows pose rig size")
 # look_alike: the class of the objects of one shape and one colour.
 ProjectRoom = namedtuple("ProjectRoom", "seed semantic_map look_alike views")
+# What P2's function gets: two spherical cameras, one `baseline` [m] above the other, and their images' size, pixels.
+Rig = namedtuple("Rig", "baseline width height")
 
 
 def record_room(seed: int, detector, poses: int = POSES, models: RecordingModels = observed_rooms.MODELS) -> dict:
@@ -93,6 +96,19 @@ def project_rooms(path: Path) -> tuple[ProjectRoom, ...]:
         ProjectRoom(room["seed"], observed_rooms.stored_map(room), room["look_alike"], tuple(map(_view, room["views"])))
         for room in json.loads(Path(path).read_text())["rooms"]
     )
+
+
+def rooms_of(name: str) -> tuple[ProjectRoom, ...]:
+    """Return the "practice" rooms, or the "hidden" ones."""
+    return project_rooms(data_path(f"projects/rooms_{name}.json"))
+
+
+def room_of(seed: int) -> ProjectRoom:
+    """Return a room by its seed. Raises `ValueError`, which names the practice rooms, if there is none."""
+    rooms = {room.seed: room for name in SEEDS for room in rooms_of(name)}
+    if seed not in rooms:
+        raise ValueError(f"there is no room of seed {seed}; the practice rooms are {str(SEEDS['practice'])[1:-1]}")
+    return rooms[seed]
 
 
 def _view(stored: dict) -> ProjectView:

@@ -7,8 +7,7 @@ import numpy as np
 from course_lib.beyond.look_alikes.matchers import associate_hungarian
 from course_lib.experiments.look_alikes import MAX_ERROR_M, is_right, pose_errors
 from course_lib.lessons.kit.projects import AnswerError, Project, Result, Rival, Task
-from course_lib.lessons.project_2.project import room_of
-from course_lib.lessons.project_2.rooms import SEEDS
+from course_lib.lessons.project_2.rooms import SEEDS, room_of
 from course_lib.lessons.project_3.exercises import assign, confidence, hypotheses, refit, squared_distances
 from course_lib.spherical_stereo.pose.rigid_fit import RigidFitError, fit_rigid_2d
 from course_lib.spherical_stereo.semantic_map.association import associate_greedy
