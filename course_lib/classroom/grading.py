@@ -15,12 +15,12 @@ import stat
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from course_lib.classroom.answers import harmless
 from course_lib.classroom.assignment_cells import read_assignments
-from course_lib.classroom.judge import Judged, as_json, from_json, judge
+from course_lib.classroom.judge import Judged, from_json, judge
 from course_lib.classroom.model_answers import function_name
 from course_lib.classroom.points import BY_HAND, most_of
 from course_lib.classroom.sandbox import Limits, library_copy, require_walls
@@ -214,7 +214,7 @@ def judge_to_file(one: Submission, path: Path, stubs: dict, seed: int, library: 
     # The soft limit alone, because the sandbox sets its own limits, which may be higher.
     resource.setrlimit(resource.RLIMIT_AS, (JUDGE_MEMORY_MB << 20, resource.getrlimit(resource.RLIMIT_AS)[1]))
     judged = judge(one.path, stubs, seed, library, limits, one.guess, trust, scores)
-    atomic_write(path, json.dumps(as_json(judged)))
+    atomic_write(path, json.dumps(asdict(judged)))
 
 
 def _one_for_each(entries: list[Entry]) -> tuple[list[Entry], list[NotRead]]:

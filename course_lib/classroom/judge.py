@@ -5,9 +5,10 @@ holds no input, no value and no word of the student's own making, because such a
 teacher's remarks hold all of it.
 """
 
+import builtins
 import contextlib
-import dataclasses
 import pickle
+from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
@@ -25,11 +26,11 @@ from course_lib.lessons.kit.projects import AnswerError, Outcome, Project, proje
 
 Status = Literal["right", "partly right", "wrong", "not attempted"]
 FAILURES = {
-    "does not end": "does not end",
-    "prints": "prints without end",
-    "calls exit": "calls exit() or quit()",
-    "calls itself": "calls itself without end",
-}
+    "does not end": "does not end in time", "prints": "prints without end", "calls exit": "calls exit() or quit()",
+    "calls itself": "calls itself without end", "takes more": "takes too much memory", "crashes": "crashes",
+    "starts more": "starts too many processes",
+}  # fmt: skip
+"""What a student reads of a failure that begins so."""
 
 
 @dataclass
@@ -109,11 +110,7 @@ def lessons_of(held: list[str], functions: list[str], stubs: dict[str, str], gue
     """Return the lessons and projects in a file: by its cells' metadata, else by its functions' names."""
     if names := sorted({number.partition(".")[0] for number in held if number in stubs}):
         return names
-    count: dict[str, int] = {}
-    for number, function in stubs.items():
-        if function in functions:
-            lesson = number.partition(".")[0]
-            count[lesson] = count.get(lesson, 0) + 1
+    count = Counter(number.partition(".")[0] for number, function in stubs.items() if function in functions)
     best = max(count, key=lambda lesson: (count[lesson], lesson == guess), default="")
     return [best] if best else []
 
@@ -163,15 +160,9 @@ def _answers(run: Run, wanted: int) -> tuple[list, list[str], list[str]]:
                 details.append(str(error))
         answers.append(value)
     if run.ended or len(answers) < wanted:
-        troubles.append(_ended_kind(run.ended or "does not answer every call"))
+        troubles.append(failure_kind(run.ended))
         details += [f"Your function {run.ended}."] if run.ended else []
     return answers + [None] * (wanted - len(answers)), troubles, list(dict.fromkeys(details))[:5]
-
-
-def _ended_kind(ended: str) -> str:
-    kinds = {"does not end": "does not end in time", "takes more": "takes too much memory", "crashes": "crashes"}
-    kinds["starts more"] = "starts too many processes"
-    return next((kind for start, kind in kinds.items() if ended.startswith(start)), "ends before it has answered")
 
 
 def failure_kind(failure: str) -> str:
@@ -179,8 +170,11 @@ def failure_kind(failure: str) -> str:
     for start, kind in FAILURES.items():
         if failure.startswith(start):
             return kind
-    name = failure.removeprefix("stops with ").split(":")[0].split(" ")[0].rstrip(".")
-    known = getattr(__import__("builtins"), name, None)
+    stops, _, name = failure.partition("stops with ")
+    if stops or not name:
+        return "ends before it has answered"
+    name = name.split(":")[0].split(" ")[0].rstrip(".")
+    known = getattr(builtins, name, None)
     return f"stops with {name}" if isinstance(known, type) and issubclass(known, Exception) else "stops with an error"
 
 
@@ -188,13 +182,9 @@ def _right(exercise: Exercise, arguments: list[tuple], answers: list) -> list[bo
     """Return where the answers are right. A kind of value that cannot be compared is wrong."""
     with contextlib.suppress(Exception):
         return right_on(exercise, arguments, answers)
-    right = []
-    for given, answer in zip(arguments, answers, strict=True):
-        one = [False]
-        with contextlib.suppress(Exception):
-            one = right_on(exercise, [given], [answer])
-        right += one
-    return right
+    if len(answers) == 1:
+        return [False]
+    return [_right(exercise, [given], [answer])[0] for given, answer in zip(arguments, answers, strict=True)]
 
 
 def _sentence(exercise: Exercise, arguments: list, answers: list, right: list[bool], troubles: list[str]) -> str:
@@ -223,10 +213,8 @@ def judge_score(name: str, path: Path, library: Path, seed: int, limits: Limits,
     outcomes: list[Outcome] = []
     with Sandbox(path, library, roomy, trust) as box:
         for world in project.seeds:
-            if outcomes and outcomes[-1].out_of_time:
-                outcomes.append(outcomes[-1])
-            else:
-                outcomes.append(_outcome(project, box, world))
+            lost = outcomes and outcomes[-1].out_of_time
+            outcomes.append(outcomes[-1] if lost else _outcome(project, box, world))
     values = [outcome.value for outcome in outcomes]
     failed = [outcome.remark for outcome in outcomes if outcome.failed]
     if len(failed) == len(values) and failed[0] == "Not attempted.":
@@ -263,7 +251,7 @@ def _outcome(project: Project, box: Sandbox, world: int) -> Outcome:
         with np.errstate(all="ignore"):
             result = project.measure(task, answers if project.many else answers[0])
         if project.rule is not None:
-            project.rule(world, lambda *arguments: call([arguments])[0], answers[0])
+            project.rule(project.prepare(world), lambda *arguments: call([arguments])[0], answers[0])
     except LookupError as error:
         return failed(str(error), last=True)
     except AnswerError as error:
@@ -275,11 +263,6 @@ def _outcome(project: Project, box: Sandbox, world: int) -> Outcome:
     return Outcome(float(result.value), result.remark)
 
 
-def as_json(judged: Judged) -> dict:
-    """Return what was judged as what `json.dumps` takes."""
-    return dataclasses.asdict(judged)
-
-
 def from_json(stored: dict) -> Judged:
-    """Return what `as_json` wrote."""
+    """Return what was judged from its `dataclasses.asdict`, as JSON keeps it."""
     return Judged(**stored | {"answers": [Graded(**one) for one in stored["answers"]]})

@@ -22,7 +22,7 @@ def rubric(assignment: Assignment, canary: str) -> str:
     most = sum(points.values())
     if assignment.is_project:
         project, most = find_project(assignment.name), most + SCORE_POINTS + BY_HAND
-        values |= {"project": project, "worlds": WORLDS[project.name], "line": LINES[project.name]}
+        values |= {"project": project, "worlds": WORLDS[project.name], "line": LINES[project.name][1]}
         values |= {"paper": project.told(paper_value(project))}
     return template("rubric.md").render(values | {"most": most})
 

@@ -10,45 +10,48 @@ method, a quarter where the function runs in every world. Source of the lines: t
 
 import dataclasses
 from collections.abc import Sequence
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 
-from course_lib.classroom.points import SCORE_POINTS
+from course_lib.classroom.points import SCORE_POINTS, secret
+from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.projects import Project, Task, find_project, is_better, stored_rivals
 from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 WORLDS = 8
 """Recordings or cameras that are drawn; rooms are all taken."""
-
-
-class Line(NamedTuple):
-    """What a project's function must reach for all points, and where the rubric says so."""
-
-    value: float
-    words: str
-
-
 LINES = {
-    "P1": Line(70.0, "below 70 mm"),
-    "P2": Line(0.154, "better than half of the paper's 0.309 m"),
-    "P3": Line(0.0, "above 0 points"),
-    "P4": Line(20.0, "below 20 mm"),
+    "P1": (70.0, "below 70 mm"),
+    "P2": (0.154, "better than half of the paper's 0.309 m"),
+    "P3": (0.0, "above 0 points"),
+    "P4": (20.0, "below 20 mm"),
 }
+"""What a median must be better than for all points, and the rubric's words for it."""
 ROOMS = {"P2": "boxes", "P3": "observations"}
 
 
 def graded_project(name: str, seed: int) -> Project:
     """The project with the worlds of a secret seed in place of its hidden ones."""
     project = find_project(name)
-    if name not in ROOMS:
-        drawn = np.random.default_rng(seed).integers(1_000_000, 2**31, WORLDS)
-        return dataclasses.replace(project, seeds=tuple(int(one) for one in drawn))
+    if name in ROOMS:
+        return dataclasses.replace(
+            project, prepare=lambda room: moved(project.prepare(room), ROOMS[name], np.random.default_rng([seed, room]))
+        )
+    # So many seeds that nobody finds a world's by trying what they make.
+    seeds = tuple(np.random.default_rng(seed).integers(1 << 62, (1 << 63) - 1, WORLDS).tolist())
     return dataclasses.replace(
-        project, prepare=lambda room: moved(project.prepare(room), ROOMS[name], np.random.default_rng([seed, room]))
+        project, seeds=seeds, prepare=lambda world: unrelated(project.prepare(world), secret(seed, f"rng of {world}"))
     )
+
+
+def unrelated(task: Task, seed: int) -> Task:
+    """The task with a generator of another seed, because its own tells the world's seed, and so the truth."""
+    given = (np.random.default_rng(seed) if isinstance(one, np.random.Generator) else one for one in task.arguments)
+    return task._replace(arguments=tuple(given))
 
 
 def paper_value(project: Project) -> float:
@@ -58,11 +61,10 @@ def paper_value(project: Project) -> float:
 
 def score_points(project: Project, values: Sequence[float]) -> float:
     """Points of a project's function that reached these values."""
-    middle, line = float(np.median(values)), LINES[project.name].value
-    if np.isfinite(middle) and is_better(project, middle, line):
-        return float(SCORE_POINTS)
-    if np.isfinite(middle) and is_better(project, middle, paper_value(project)):
-        return SCORE_POINTS / 2
+    middle = float(np.median(values))
+    for line, share in ((LINES[project.name][0], 1), (paper_value(project), 2)):
+        if np.isfinite(middle) and is_better(project, middle, line):
+            return SCORE_POINTS / share
     return SCORE_POINTS / 4 if np.isfinite(values).all() else 0.0
 
 
@@ -71,9 +73,7 @@ def score_sentence(project: Project, values: Sequence[float], failed: int) -> st
     lost = f"; it failed in {failed} of {len(values)} worlds" if failed else ""
     middle = float(np.median(values))
     reached = f"median {project.told(middle)}" if np.isfinite(middle) else "no median"
-    line = (
-        f"all points: {LINES[project.name].words}; half: better than the paper's {project.told(paper_value(project))}"
-    )
+    line = f"all points: {LINES[project.name][1]}; half: better than the paper's {project.told(paper_value(project))}"
     return f"{reached} over {len(values)} other worlds{lost} ({line})."
 
 
@@ -96,22 +96,18 @@ def moved(task: Task, seen: Literal["boxes", "observations"], rng: np.random.Gen
         else:
             heading = rng.uniform(-np.pi, np.pi)
             calls.append((tuple(turned(one, -heading) for one in arguments[0]), there))
-        x, y = rotation(turn) @ pose[:2] + shift
-        poses.append((x, y, wrapped(pose[2] + turn + heading)))
+        x, y = rotation_2d(turn) @ pose[:2] + shift
+        poses.append((x, y, wrap_angle(pose[2] + turn + heading)))
     return Task(tuple(calls), np.array(poses))
 
 
 def moved_map(semantic_map: SemanticMap, turn: float, shift: np.ndarray) -> SemanticMap:
     """The map turned by `turn` about the origin, then shifted, metres."""
-
-    def there(points: np.ndarray) -> np.ndarray:
-        return points @ rotation(turn).T + shift
-
+    places = semantic_map.positions @ rotation_2d(turn).T + shift
     landmarks = [
-        dataclasses.replace(one, x=float(x), y=float(y))
-        for one, (x, y) in zip(semantic_map.landmarks, there(semantic_map.positions), strict=True)
+        dataclasses.replace(one, x=x, y=y) for one, (x, y) in zip(semantic_map.landmarks, places.tolist(), strict=True)
     ]
-    walls = None if semantic_map.walls is None else there(np.asarray(semantic_map.walls))
+    walls = None if semantic_map.walls is None else np.asarray(semantic_map.walls) @ rotation_2d(turn).T + shift
     return SemanticMap(landmarks, walls, semantic_map.name)
 
 
@@ -124,17 +120,7 @@ def rolled(detection: Detection, columns: int, width: int) -> Detection:
 
 def turned(observation: Observation, angle: float) -> Observation:
     """An observation turned about the body's upward axis, its covariance too."""
-    r = rotation(angle)
-    x, y = r @ (observation.x, observation.y)
+    r = rotation_2d(angle)
+    x, y = (r @ (observation.x, observation.y)).tolist()
     covariance = None if observation.covariance is None else r @ observation.covariance @ r.T
-    return observation._replace(x=float(x), y=float(y), covariance=covariance)
-
-
-def rotation(angle: float) -> np.ndarray:
-    """(2, 2), counterclockwise."""
-    cosine, sine = np.cos(angle), np.sin(angle)
-    return np.array([[cosine, -sine], [sine, cosine]])
-
-
-def wrapped(angle: float) -> float:
-    return float((angle + np.pi) % (2 * np.pi) - np.pi)
+    return observation._replace(x=x, y=y, covariance=covariance)

@@ -1,36 +1,35 @@
 """Worlds of a secret seed: as hard as the hidden ones, and no pose learned by heart fits; the points of a score."""
 
+import pickle
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
+from course_lib.classroom import worlds
+from course_lib.classroom.judge import judge
 from course_lib.classroom.points import SCORE_POINTS
+from course_lib.classroom.sandbox import Limits
 from course_lib.classroom.worlds import LINES, graded_project, moved, paper_value, score_points, score_sentence
+from course_lib.lessons.kit.exercises import lesson_exercises, lesson_numbers
 from course_lib.lessons.kit.projects import find_project, outcomes, project_names
 from course_lib.lessons.project_2.project import pose_cost
 
 
 def test_every_project_has_a_line_between_the_papers_method_and_ours():
     assert list(LINES) == project_names()
-    for name, line in LINES.items():
+    for name, (line, _) in LINES.items():
         project = find_project(name)
-        better = line.value + (1e-3 if project.better == "higher" else -1e-3)
+        better = line + (1e-3 if project.better == "higher" else -1e-3)
         assert score_points(project, [better] * 3) == SCORE_POINTS
-        assert score_points(project, [line.value] * 3) == SCORE_POINTS / 2
+        assert score_points(project, [line] * 3) == SCORE_POINTS / 2
         assert score_points(project, [paper_value(project)] * 3) == SCORE_POINTS / 4
 
 
 def test_the_points_of_a_score():
-    project = find_project("P1")
-    assert score_points(project, [10.0, 69.0, 200.0]) == SCORE_POINTS
-    assert score_points(project, [10.0, 71.0, 200.0]) == SCORE_POINTS / 2
-    assert score_points(project, [110.0, 120.0, 130.0]) == SCORE_POINTS / 4
-    assert score_points(project, [110.0, 120.0, np.inf]) == 0
-    assert score_points(project, [np.inf, np.inf, 10.0]) == 0
-    assert score_points(project, [10.0, 20.0, np.inf]) == SCORE_POINTS, (
-        "a world that is lost is lost, the median counts"
-    )
-    assert score_points(find_project("P3"), [-1.0, 0.5, 2.0]) == SCORE_POINTS
-    assert score_points(find_project("P3"), [-1.0, -0.5, 2.0]) == SCORE_POINTS / 2
+    for values, points in (([110, 120, np.inf], 0), ([np.inf, np.inf, 10], 0), ([10, 20, np.inf], SCORE_POINTS)):
+        assert score_points(find_project("P1"), values) == points, "a world that is lost is lost, the median counts"
 
 
 @pytest.mark.parametrize("name", ["P1", "P4"])
@@ -40,6 +39,34 @@ def test_recordings_and_cameras_are_of_other_seeds(name):
     assert not set(one) & set(two)
     assert not set(one) & set(find_project(name).seeds)
     assert graded_project(name, 5).seeds == one
+
+
+LOOKED_UP = {
+    "P1": ("localize(renderer, camera, frames, start, n_particles, rng)", """
+    seed = rng.bit_generator.seed_seq.entropy
+    recording = type(renderer).render.__globals__["recording"]
+    return recording(seed[0] if isinstance(seed, list) else seed).states[: len(frames)]
+    """),
+    "00.3": ("find_the_camera(score, start)", """
+    return next(one for one in vars(score).values() if getattr(one, "shape", None) == (3,))
+    """),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("number", LOOKED_UP)
+def test_a_truth_that_the_arguments_would_tell_is_not_there(library, tmp_path, monkeypatch, number):
+    monkeypatch.setattr(worlds, "WORLDS", 1)
+    (tmp_path / "a.py").write_text("def {}:{}".format(*LOOKED_UP[number]), encoding="utf-8")
+    stubs = {number: LOOKED_UP[number][0].split("(")[0]}
+    (found,) = judge(tmp_path / "a.py", stubs, 5, library, Limits(), scores=True).answers
+    assert found.points == (SCORE_POINTS / 4 if number == "P1" else 0), found  # of P1's: it runs
+
+
+def test_what_functions_get_can_be_read_where_they_run(library):
+    given = [find_project(name).prepare(find_project(name).seeds[0]).arguments for name in project_names()]
+    given += [one.draw(np.random.default_rng(1)) for name in lesson_numbers() for one in lesson_exercises(name)]
+    code = "import pickle, sys; sys.path.insert(0, sys.argv[1]); pickle.load(sys.stdin.buffer)"
+    subprocess.run([sys.executable, "-P", "-c", code, library], input=pickle.dumps(given), check=True)
 
 
 @pytest.mark.parametrize("name", ["P2", "P3"])

@@ -25,6 +25,6 @@ def test_a_seed_has_its_own_recording_and_the_value_is_the_median_horizontal_err
 def test_the_budget_ends_and_estimates_that_use_later_frames_are_refused():
     outcome = one_outcome(PROJECT, lambda renderer, *_: renderer.render(np.zeros((1601, 6))), SEED)
     assert "the budget of 1600 renders is spent" in outcome.remark
-    no_later_frames(SEED, lambda *given: np.ones((len(given[2]), 6)), np.ones((40, 6)))
+    no_later_frames(prepare(SEED), lambda *given: np.ones((len(given[2]), 6)), np.ones((40, 6)))
     with pytest.raises(AnswerError, match="when it is not given the later ones"):
-        no_later_frames(SEED, lambda *given: len(given[2]) * np.ones((len(given[2]), 6)), np.full((40, 6), 40))
+        no_later_frames(prepare(SEED), lambda *given: np.full((len(given[2]), 6), len(given[2])), np.full((40, 6), 40))

@@ -75,8 +75,8 @@ class Project:
     in a submitted file. seeds: hidden, at least six, because fewer have no interval. prepare: makes a seed's `Task`.
     measure: makes the `Result` of an answer. rivals: the methods to compare with. seconds: time limit of one call.
     many: True if a task holds the arguments of many calls, a tuple for each; its answer is the list of their results.
-    forbidden: modules that a submission may not use. rule: `rule(seed, function, answer)` raises `AnswerError` if the
-    answer came about against the rules.
+    forbidden: modules that a submission may not use. rule: `rule(task, function, answer)` gets the task as `prepare`
+    made it and raises `AnswerError` if the answer came about against the rules.
     """
 
     name: str
@@ -92,7 +92,7 @@ class Project:
     seconds: float = 120.0
     many: bool = False
     forbidden: tuple[str, ...] = ()
-    rule: Callable[[int, Callable, object], None] | None = None
+    rule: Callable[[Task, Callable, object], None] | None = None
 
     @property
     def worst(self) -> float:
@@ -178,7 +178,7 @@ def one_outcome(project: Project, function: Callable, seed: int) -> Outcome:
     try:
         result = project.measure(task, trial.value)
         if project.rule is not None:
-            project.rule(seed, function, trial.value)
+            project.rule(project.prepare(seed), function, trial.value)
     except AnswerError as error:
         return Outcome(project.worst, f"Your function {error}.", True, printed=trial.printed)
     if not np.isfinite(result.value):

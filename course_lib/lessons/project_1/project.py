@@ -38,10 +38,10 @@ def measure(task: Task, answer: object) -> Result:
     return Result(1000 * float(np.median(errors)), f"worst frame {1000 * errors.max():.1f} mm; {told}")
 
 
-def no_later_frames(seed: int, function: Callable, answer: object) -> None:
+def no_later_frames(task: Task, function: Callable, answer: object) -> None:
     """Run the function without the later frames. Raises `AnswerError` if its estimates of the first ones change."""
-    arguments, _ = prepare(seed)
-    again = attempt(function, (*arguments[:2], arguments[2][:FIRST_FRAMES], *arguments[3:])).value
+    renderer, camera, frames, *others = task.arguments
+    again = attempt(function, (renderer, camera, frames[:FIRST_FRAMES], *others)).value
     kept = np.asarray(answer, dtype=np.float64)[:FIRST_FRAMES]
     if np.shape(again) != kept.shape or not np.allclose(again, kept, rtol=0, atol=1e-6):
         raise AnswerError(
