@@ -50,11 +50,8 @@ def test_an_honest_notebook_of_an_odd_form_has_all_points(judged):
 
 
 def test_a_known_mistake_is_named_and_what_cannot_run_is_said(judged):
-    answers = solved("06") | {
-        "06.1": mistaken("06.1"),
-        "06.2": "def weigh_rightly(:\n",
-        "06.4": "LIMIT = nothing_there",
-    }
+    others = {"06.2": "def weigh_rightly(:\n", "06.4": "LIMIT = nothing_there"}
+    answers = solved("06") | {"06.1": mistaken("06.1")} | others
     found = judged(answers)
     assert found.answers[0].sentence in {mistake.hint for mistake in find_exercise("06.1").known}
     assert [one.status for one in found.answers] == ["wrong", "not attempted", "right", "not attempted"]
@@ -73,10 +70,9 @@ def test_half_of_the_inputs_right_earns_half(judged):
     body = ["    if len(likelihoods) % 2:", "        return 0.0"]
     place = next(k for k, line in enumerate(right) if "return" in line)
     found = judged({"06.3": "\n".join([*right[:place], *body, *right[place:]])}).answers[2]
-    assert found.points in (0, 2)
-    assert found.points == earned(
-        find_exercise("06.3"), [True] * found.right_inputs + [False] * (found.inputs - found.right_inputs)
-    )
+    right_on = [number < found.right_inputs for number in range(found.inputs)]
+    assert 0 < found.right_inputs < found.inputs
+    assert found.points == earned(find_exercise("06.3"), right_on)
 
 
 def test_the_lesson_is_known_by_its_cells_else_by_its_functions(judged, library, tmp_path):
@@ -102,13 +98,11 @@ def test_a_damaged_file_is_told_in_a_sentence(library, tmp_path, content, why):
 
 def test_tries_and_predictions_are_read_from_what_the_notebook_shows(library, tmp_path):
     notebook = assignment_of("06").notebook()
-    for cell in notebook.cells:
-        if cell.get("metadata", {}).get("exercise") == "06.1" and cell.cell_type == "code" and "check(" in cell.source:
-            cell.outputs = [nbformat.v4.new_output("stream", name="stdout", text="06.1: right. (try 4)\n")]
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
-    code[-1].outputs = [
-        nbformat.v4.new_output("stream", name="stdout", text="1. How far?\n   you said: 3 m\n   measured: 0.3 m\n")
-    ]
+    checked = next(cell for cell in code if cell.source.startswith('check("06.1"'))
+    recall = "1. How far?\n   you said: 3 m\n   measured: 0.3 m\n"
+    for cell, text in ((checked, "06.1: right. (try 4)\n"), (code[-1], recall)):
+        cell.outputs = [nbformat.v4.new_output("stream", name="stdout", text=text)]
     (tmp_path / "06.ipynb").write_text(nbformat.writes(notebook), encoding="utf-8")
     found = judge(tmp_path / "06.ipynb", STUBS, 5, library, Limits())
     assert found.tries == {"06.1": 4}

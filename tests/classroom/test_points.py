@@ -3,26 +3,18 @@
 import numpy as np
 import pytest
 
-from course_lib.classroom.points import earned, points_of
+from course_lib.classroom.points import POINTS, earned, points_of
 from course_lib.lessons.kit.exercises import Exercise, find_exercise, right_on
 
 
-@pytest.mark.parametrize(
-    ("level", "right", "points"),
-    [
-        ("warm-up", [True] * 4, 2),
-        ("core", [True] * 4, 4),
-        ("challenge", [True] * 4, 6),
-        ("challenge", [True, True, False, False], 3),
-        ("challenge", [True, False, False, False], 0),
-        ("core", [False] * 4, 0),
-        ("core", [True] * 25 + [False], 2),
-    ],
-)
-def test_all_right_earns_all_half_right_earns_half(level, right, points):
-    exercise = Exercise("99.1", abs, lambda rng: (1.0,), level)
-    assert earned(exercise, right) == points
-    assert points_of(exercise) == {"warm-up": 2, "core": 4, "challenge": 6}[level]
+@pytest.mark.parametrize(("right", "share"), [
+    ([True] * 4, 1), ([True, True, False, False], 0.5), ([True, False, False, False], 0), ([False] * 4, 0),
+    ([True] * 25 + [False], 0.5),
+])  # fmt: skip
+def test_all_right_earns_all_half_right_earns_half(right, share):
+    for level, points in POINTS.items():
+        exercise = Exercise("99.1", abs, lambda rng: (1.0,), level)
+        assert (points_of(exercise), earned(exercise, right)) == (points, share * points)
 
 
 def test_right_inputs_are_counted_by_the_function_that_fits_best():
