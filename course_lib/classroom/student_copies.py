@@ -4,6 +4,7 @@ The folder works by itself: links between lessons, the glossary, pictures and sc
 link to anything else becomes plain words. What stands between `<!-- solutions -->` and `<!-- /solutions -->` goes.
 """
 
+import posixpath
 import re
 import shutil
 from collections.abc import Callable
@@ -103,11 +104,8 @@ def within(places: set[PurePosixPath], page: PurePosixPath) -> Resolve:
     """Return the `Resolve` for links from `page`: the link if it leads to a file of the folder, else None."""
 
     def resolve(target: str) -> str | None:
-        parts: list[str] = list(page.parent.parts)
-        for part in PurePosixPath(target).parts:
-            parts = parts[:-1] if part == ".." else [*parts, part]
-        meant = PurePosixPath(*parts)
-        return target if meant in places or (parts and parts[0] in FOLDERS) else None
+        meant = PurePosixPath(posixpath.normpath(page.parent / target))
+        return target if meant in places or meant.parts[0] in FOLDERS else None
 
     return resolve
 
