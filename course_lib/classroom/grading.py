@@ -7,6 +7,7 @@ limits. So a run that was ended goes on, and a second one looks only at what cha
 import contextlib
 import csv
 import hashlib
+import io
 import json
 import multiprocessing
 import os
@@ -30,7 +31,7 @@ from course_lib.classroom.model_answers import function_name
 from course_lib.classroom.points import BY_HAND, most_of
 from course_lib.classroom.sandbox import SYSTEM, Limits, Sandbox, SandboxError, library_copy, require_walls
 from course_lib.classroom.self_test import self_test
-from course_lib.classroom.submissions import NotRead, Roster, Submission, collect, shown
+from course_lib.classroom.submissions import NotRead, Roster, Submission, collect, read_table, shown
 from course_lib.files import atomic_write, temporary_folder
 from course_lib.lessons.kit.projects import project_names
 from course_lib.paths import REPOSITORY
@@ -66,11 +67,12 @@ class Settings(NamedTuple):
 
 @dataclass
 class Entry:
-    """One submission and what it came to. canary: whether it holds the words of a teacher's solutions."""
+    """One submission and what it came to. canary: it holds the words of a teacher's solutions. changed: when, in ns."""
 
     submission: Submission
     judged: Judged
     canary: bool = False
+    changed: int = 0
 
     @property
     def student(self) -> str:
@@ -223,7 +225,7 @@ def _all(found: list[Submission], judged: Path, settings: Settings, jobs: int) -
 def _one(one: Submission, judged: Path, settings: Settings, spent: Counter[str]) -> Entry:
     """Judge one submission in a process of its own, unless it was judged before."""
     try:
-        content = read_plain(one.path)
+        content, changed = read_plain(one.path)
     except OSError as error:
         return Entry(one, Judged(why=f"the file cannot be read: {error.strerror or error}"))
     suffix = one.path.suffix.lower()
@@ -249,16 +251,16 @@ def _one(one: Submission, judged: Path, settings: Settings, spent: Counter[str])
         found = from_json(json.loads(path.read_text(encoding="utf-8")))
     except (OSError, ValueError, TypeError, KeyError):
         found = Judged(why="could not be judged, because its judge ended. Grade the folder again")
-    return Entry(one, found, bool(CANARY.search(content)))
+    return Entry(one, found, bool(CANARY.search(content)), changed)
 
 
-def read_plain(path: Path) -> bytes:
-    """Return a plain file's content, whatever its name points to by now. Raises `OSError` for anything else."""
+def read_plain(path: Path) -> tuple[bytes, int]:
+    """Return a plain file's content and when it changed, whatever its name means by now. Raises `OSError`."""
     with os.fdopen(os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK), "rb") as file:
         kind = os.fstat(file.fileno())
         if not stat.S_ISREG(kind.st_mode) or kind.st_size > MAX_FILE:
             raise OSError(f"it is no plain file of at most {MAX_FILE >> 20} MB")
-        return file.read(MAX_FILE)
+        return file.read(MAX_FILE), kind.st_mtime_ns
 
 
 def judge_to_file(one: Submission, path: Path, settings: Settings) -> None:
@@ -310,7 +312,7 @@ def what_counts(judged: list[Entry], asked: list[str]) -> tuple[list[Entry], lis
     other = "was not asked for" if asked else "was handed in by nobody else. If it was set, name it with --lessons"
     newest: dict[tuple[str, str], str] = {}
     entries = []
-    for entry in sorted(read, key=lambda e: (modified(e.submission.path), e.name), reverse=True):
+    for entry in sorted(read, key=lambda e: (e.changed, e.name), reverse=True):
         mine = []
         for lesson in entry.judged.lessons:
             if lesson not in (asked or common):
@@ -326,40 +328,28 @@ def what_counts(judged: list[Entry], asked: list[str]) -> tuple[list[Entry], lis
     return sorted(entries, key=lambda e: e.submission), sorted(not_read)
 
 
-def modified(path: Path) -> int:
-    try:
-        return path.lstat().st_mtime_ns
-    except OSError:  # it has gone meanwhile
-        return 0
-
-
 def points_by_hand(path: Path, entries: list[Entry]) -> dict[tuple[str, str], float]:
     """Read the points that the teacher gave in by_hand.csv; add a row for every project that has none yet.
 
     Raises `ValueError` if a row holds no number from 0 to `BY_HAND`.
     """
-    rows = []
-    if path.is_file():
-        rows = list(csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines()))
-        rows = [{key: (value or "").removeprefix("'") for key, value in row.items() if key} for row in rows]
-    known = {(row["student"], row["project"]) for row in rows}
-    for one in entries:
-        for lesson in one.judged.lessons:
-            if lesson in project_names() and (one.student, lesson) not in known:
-                rows.append({"student": one.student, "project": lesson, "points": "", "remark": ""})
-    if not rows:
-        return {}
-    with open(path, "w", encoding="utf-8-sig", newline="") as file:
-        writer = csv.DictWriter(file, ["student", "project", "points", "remark"])
-        writer.writeheader()
-        writer.writerows({key: harmless(value) for key, value in row.items()} for row in rows)
-    given = {}
-    for row in rows:
-        if row["points"].strip():
-            points = float(row["points"].replace(",", "."))
-            if not 0 <= points <= BY_HAND:
-                raise ValueError(
-                    f"{path}: {row['student']}, {row['project']}: points are from 0 to {BY_HAND}, not {points}"
-                )
-            given[row["student"], row["project"]] = points
+    projects = [(one.student, name) for one in entries for name in one.judged.lessons if name in project_names()]
+    rows = {key: {"points": "", "remark": ""} for key in projects}
+    for row in read_table(path) if path.is_file() else ():
+        row = {heading: text.removeprefix("'") for heading, text in row.items()}
+        rows[row["student"], row["project"]] = {"points": row["points"].strip(), "remark": row["remark"]}
+    if rows:
+        told = [[*key, row["points"], row["remark"]] for key, row in rows.items()]
+        atomic_write(path, table_text([["student", "project", "points", "remark"], *told]))
+    given = {key: float(row["points"].replace(",", ".")) for key, row in rows.items() if row["points"]}
+    for (student, project), points in given.items():
+        if not 0 <= points <= BY_HAND:
+            raise ValueError(f"{path}: {student}, {project}: points are from 0 to {BY_HAND}, not {points}")
     return given
+
+
+def table_text(rows: Iterable[Sequence[object]]) -> str:
+    """Return rows as CSV with a byte order mark, every text quoted; an apostrophe stands before a formula's sign."""
+    text = io.StringIO()
+    csv.writer(text, quoting=csv.QUOTE_ALL, lineterminator="\r\n").writerows([map(harmless, row) for row in rows])
+    return "\ufeff" + text.getvalue()

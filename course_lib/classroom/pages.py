@@ -1,14 +1,11 @@
 """What a grading writes: the teacher's page, a feedback page for each student, and tables for an LMS."""
 
-import csv
-import io
 import itertools
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from course_lib.classroom.answers import harmless
-from course_lib.classroom.grading import Results
+from course_lib.classroom.grading import Results, table_text
 from course_lib.classroom.points import BY_HAND
 from course_lib.classroom.templates import template
 from course_lib.files import atomic_write
@@ -24,7 +21,7 @@ def write_results(results: Results, out: Path) -> list[str]:
     atomic_write(out / "grades.html", template("grades.html").render(values))
     tables = {"totals.csv": totals(results), "answers.csv": answers(results)}
     for name, rows in tables.items():
-        atomic_write(out / name, written(rows))
+        atomic_write(out / name, table_text(rows))
     (out / "feedback").mkdir(exist_ok=True)
     taken: dict[str, str] = {}
     for student in results.students:
@@ -68,12 +65,3 @@ def answers(results: Results) -> Iterable[Sequence[object]]:
                 inputs, tries = [one.right_inputs, one.inputs], entry.judged.tries.get(one.number, "")
                 said = [f"{one.points:g}", one.most, *inputs, tries, one.sentence, entry.name]
                 yield [student, one.number, one.status, *said]
-
-
-def written(rows: Iterable[Sequence[object]]) -> str:
-    """Return rows as CSV with a byte order mark, every text quoted; an apostrophe stands before a formula's sign."""
-    text = io.StringIO()
-    writer = csv.writer(text, quoting=csv.QUOTE_ALL, lineterminator="\r\n")
-    for row in rows:
-        writer.writerow([harmless(cell) for cell in row])
-    return "\ufeff" + text.getvalue()

@@ -79,24 +79,18 @@ def student_text(text: str, resolve: Resolve | None = None) -> str:
     return LINK.sub(one, ABOUT_SOLUTIONS.sub("", text))
 
 
-def place_of(assignment: Assignment) -> PurePosixPath:
-    """Return where a lesson lies in a folder of copies: as in notebooks/."""
-    return PurePosixPath(assignment.path.relative_to(NOTEBOOKS).as_posix())
-
-
 def write_copies(folder: Path, assignments: list[Assignment], make: Callable = student_notebook) -> None:
     """Write lessons, pages, pictures and scenes into an empty folder; `make` is `student_notebook` or another."""
     for name in FOLDERS:
         shutil.copytree(NOTEBOOKS / name, folder / name, ignore=shutil.ignore_patterns("yours", ".*"))
-    places = {place_of(assignment) for assignment in assignments}
-    places |= {PurePosixPath(name) for name in PAGES} | {PurePosixPath("projects")}
+    lessons = {PurePosixPath(one.path.relative_to(NOTEBOOKS).as_posix()): one for one in assignments}
+    places = {*lessons, *map(PurePosixPath, PAGES), PurePosixPath("projects")}
     for page in PAGES:
         path = folder / page
         path.parent.mkdir(parents=True, exist_ok=True)
         text = (NOTEBOOKS / page).read_text(encoding="utf-8")
         path.write_text(student_text(text, within(places, PurePosixPath(page))), encoding="utf-8")
-    for assignment in assignments:
-        place = place_of(assignment)
+    for place, assignment in lessons.items():
         write_notebook(folder / place, make(assignment, within(places, place)))
 
 

@@ -161,33 +161,40 @@ def plain(name: str) -> str:
 
 
 def read_roster(path: Path) -> Roster:
-    """Read a class list: a CSV file with a heading, as an LMS exports it. Raises `SubmissionError`."""
-    try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-        dialect = csv.Sniffer().sniff(text.splitlines()[0], delimiters=",;\t")
-        reader = csv.DictReader(text.splitlines(), dialect=dialect)
-        rows = [{k: v or "" for k, v in row.items() if k is not None} for row in reader]
-    except (OSError, UnicodeDecodeError, csv.Error, IndexError) as error:
-        raise SubmissionError(f"--roster {path} is not a CSV file with a heading ({error})") from error
-    known = {column.strip().casefold(): column for column in reader.fieldnames or ()}
+    """Read a class list, as an LMS exports it. Raises `SubmissionError`."""
+    rows = read_table(path)
+    headings = tuple(rows[0]) if rows else ()
+    known = {heading.strip().casefold(): heading for heading in headings}
     columns = [known[name] for name in NAMES if name in known]
     first, last = known.get("first name"), known.get("last name") or known.get("surname")
     if not columns and not (first and last):
-        raise SubmissionError(f"--roster {path} has no column that names students: call one of them {', '.join(NAMES)}")
+        raise SubmissionError(f"{path} has no column that names students: call one of them {', '.join(NAMES)}")
     by_key, keys = {}, {}
     for row in rows:
-        told = [row[column] for column in columns if row[column].strip()]
-        if first and last:
-            told = [f"{row[first]} {row[last]}", *told]
-        if told:
-            by_key[told[0]] = row
-            for name in told:
-                digits = re.findall(r"\d+", name)
-                extra = [name.partition("@")[0], re.sub(r"\W", "", name)]
-                extra += ["".join(reversed(name.split(maxsplit=1)))] if " " in name else []
-                for one in [name, *extra, *([digits[-1]] if digits and "participant" in name.casefold() else [])]:
-                    keys.setdefault(plain(one), told[0])
-    return Roster(tuple(reader.fieldnames or ()), by_key, keys)
+        told = [f"{row[first]} {row[last]}"] if first and last else []
+        told += [row[column] for column in columns if row[column].strip()]
+        for name in told:
+            by_key.setdefault(told[0], row)
+            forms = [name, name.partition("@")[0], re.sub(r"\W", "", name)]
+            forms += ["".join(reversed(name.split(maxsplit=1)))] if " " in name else []
+            forms += re.findall(r"(\d+)\D*$", name) if "participant" in name.casefold() else []
+            for form in forms:
+                keys.setdefault(plain(form), told[0])
+    return Roster(headings, by_key, keys)
+
+
+def read_table(path: Path) -> list[dict[str, str]]:
+    """Read a CSV file with a heading, with commas, semicolons or tabs, as a spreadsheet or an LMS writes it.
+
+    Raises `SubmissionError` if it is none.
+    """
+    try:
+        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+        dialect = csv.Sniffer().sniff(lines[0], delimiters=",;\t")
+        rows = list(csv.DictReader(lines, dialect=dialect))
+        return [{heading: text or "" for heading, text in row.items() if heading is not None} for row in rows]
+    except (OSError, UnicodeDecodeError, csv.Error, IndexError) as error:
+        raise SubmissionError(f"{path} is not a CSV file with a heading ({error})") from error
 
 
 def shown(name: object) -> str:

@@ -72,7 +72,7 @@ def test_composed_and_decomposed_letters_are_one_name(tmp_path):
 @pytest.mark.parametrize("text", ["", "grade\n3\n", "\xff"])
 def test_a_class_list_without_names_is_refused(tmp_path, text):
     (tmp_path / "class.csv").write_text(text, encoding="latin-1")
-    with pytest.raises(SubmissionError, match="--roster"):
+    with pytest.raises(SubmissionError, match=r"CSV file|no column"):
         read_roster(tmp_path / "class.csv")
 
 
@@ -116,6 +116,4 @@ def test_a_student_with_very_many_files_stops_nobody(tmp_path):
             (tmp_path / student / f"{number}.py").touch()
     found, not_read = collect(tmp_path, LESSONS)
     assert [sum(one.student == student for one in found) for student in ("alice", "bob")] == [100, 1]
-    assert [(one.name, one.why) for one in not_read] == [
-        ("1,901 more files", "only 100 files of a student are graded")
-    ]
+    assert [(one.name, one.why) for one in not_read] == [("1,901 more files", "only 100 files of a student are graded")]
