@@ -176,7 +176,7 @@ def grade_folder(
     roster, assignments = roster or Roster(), read_assignments()
     asked = [one.name for one in read_assignments(list(lessons))] if lessons else []
     found, not_read = collect(folder, {one.name: one.path.stem for one in assignments}, roster)
-    with tried_library(limits, trust, folder, out) as (library, tried, machine):
+    with tried_library(limits, trust) as (library, tried, machine):
         (out / "judged").mkdir(parents=True, exist_ok=True)
         settings = Settings(function_names(assignments), seed, library, limits, trust, scores)
         judged = sorted(progress(_all(found, out / "judged", settings, jobs), len(found)), key=lambda e: e.submission)
@@ -193,13 +193,13 @@ def function_names(assignments: list[Assignment]) -> dict[str, str]:
 
 
 @contextlib.contextmanager
-def tried_library(limits: Limits, trust: bool, *places: Path) -> Iterator[tuple[Path, list[str], str]]:
+def tried_library(limits: Limits, trust: bool) -> Iterator[tuple[Path, list[str], str]]:
     """Yield the library for the sandbox, what was tried against the walls in vain, and what this machine is.
 
-    places: what no submission may see. Raises `SandboxError` if the walls do not hold, unless `trust` is given.
+    Raises `SandboxError` if the walls do not hold, unless `trust` is given.
     """
     if not trust:
-        require_unseen(REPOSITORY, *places)
+        require_unseen(REPOSITORY)
         require_walls()
     with temporary_folder() as scratch, library_copy(scratch) as library:
         tried, machine = ([], "") if trust else self_test(library, limits)

@@ -27,7 +27,7 @@ from traitlets import Bool, Unicode
 from traitlets.config import Config
 
 from course_lib.classroom.assignment_cells import read_assignments
-from course_lib.classroom.grading import function_names, tried_library
+from course_lib.classroom.grading import function_names, require_unseen, tried_library
 from course_lib.classroom.judge import Judged, judge
 from course_lib.classroom.sandbox import Limits
 from course_lib.classroom.student_copies import write_notebook
@@ -41,6 +41,8 @@ class Judge(NbGraderPreprocessor):
     trust = Bool(False, help="judge without walls: only where you have read every file").tag(config=True)
 
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
+        if not self.trust:
+            require_unseen(Path(self.seed_file))
         seed = json.loads(Path(self.seed_file).read_text(encoding="utf-8"))["seed"]
         judged = judge_notebook(nb, seed, self.trust)
         given = {one.number.replace(".", "-"): one for one in judged.answers}

@@ -37,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
     from joblib import cpu_count
 
     # Only here: they bring the lessons with them.
-    from course_lib.classroom.grading import grade_folder
+    from course_lib.classroom.grading import grade_folder, require_unseen
     from course_lib.classroom.pages import write_results
     from course_lib.classroom.sandbox import Limits
     from course_lib.classroom.submissions import read_roster
@@ -46,6 +46,8 @@ def run(arguments: argparse.Namespace) -> int:
     options.require_processes("--jobs", arguments.jobs)
     options.require_positive("--seconds", arguments.seconds, "seconds")
     options.require_positive("--memory", arguments.memory, "MB")
+    if not arguments.trust:
+        require_unseen(arguments.folder, out)
     seed = kept_seed(out, arguments.seed)
     options.require_seed(seed)
     roster = read_roster(arguments.roster) if arguments.roster else None
