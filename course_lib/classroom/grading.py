@@ -4,49 +4,75 @@ What was judged lies in OUT/judged/, a file for each submission, named by a dige
 limits. So a run that was ended goes on, and a second one looks only at what changed.
 """
 
+import contextlib
 import csv
 import hashlib
+import io
 import json
 import multiprocessing
 import os
+import pickle
 import re
 import resource
 import stat
+import sys
+import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
+from typing import NamedTuple
 
-from course_lib.classroom.answers import harmless
-from course_lib.classroom.assignment_cells import read_assignments
+from course_lib.classroom.answers import AnswerFormatError, harmless, one_line
+from course_lib.classroom.assignment_cells import Assignment, read_assignments
 from course_lib.classroom.judge import Judged, from_json, judge
 from course_lib.classroom.model_answers import function_name
 from course_lib.classroom.points import BY_HAND, most_of
-from course_lib.classroom.sandbox import Limits, library_copy, require_walls
+from course_lib.classroom.sandbox import SYSTEM, Limits, Sandbox, SandboxError, library_copy, require_walls
 from course_lib.classroom.self_test import self_test
-from course_lib.classroom.submissions import NotRead, Roster, Submission, collect, shown
+from course_lib.classroom.submissions import NotRead, Roster, Submission, collect, read_table, shown
 from course_lib.files import atomic_write, temporary_folder
 from course_lib.lessons.kit.projects import project_names
+from course_lib.paths import REPOSITORY
 
-JUDGE_SECONDS = 900  # of one submission, beyond its answers' own time; a slow machine needs some ten
-SCORE_SECONDS = 7200
+FILE_ANSWERS, FILE_SECONDS = 4, 60.0
+"""A file has the full time of so many answers, as most lessons have, and so many seconds to be read and compared."""
+SCORE_SECONDS = 7200.0  # of a file with --scores
+STUDENT_FILES = 3  # in one run, a student has the time of so many files
 JUDGE_MEMORY_MB = 8000
 MAX_FILE = 20 << 20
+MAX_STOPPED = 5  # statements that stop, on a student's page
 KEYS = ("right", "partly_right", "wrong", "not_attempted")
 FORKS = multiprocessing.get_context("forkserver")  # a clean process that has imported the judge makes the others
 FORKS.set_forkserver_preload(["course_lib.classroom.judge"])
 CANARY = re.compile(rb"not-for-students-[0-9a-f]{12}")
 
 
+class Settings(NamedTuple):
+    """How every file of a folder is judged. functions: of each exercise and project, "06.1" -> "raw_score"."""
+
+    functions: dict[str, str]
+    seed: int
+    library: Path
+    limits: Limits
+    trust: bool
+    scores: bool
+
+    @property
+    def seconds(self) -> float:
+        """Return the time that one file has."""
+        return SCORE_SECONDS if self.scores else FILE_SECONDS + FILE_ANSWERS * self.limits.seconds
+
+
 @dataclass
 class Entry:
-    """One submission and what it came to. canary: whether it holds the words of a teacher's solutions."""
+    """One submission and what it came to. canary: it holds the words of a teacher's solutions. changed: when, in ns."""
 
     submission: Submission
     judged: Judged
     canary: bool = False
-    counts: bool = True
+    changed: int = 0
 
     @property
     def student(self) -> str:
@@ -59,7 +85,7 @@ class Entry:
 
 @dataclass
 class Results:
-    """What a folder's grading came to. by_hand: (student, project) -> points that the teacher gave."""
+    """What a folder's grading came to. entries: what counts. by_hand: (student, project) -> points of the teacher's."""
 
     entries: list[Entry]
     not_read: list[NotRead]
@@ -67,6 +93,7 @@ class Results:
     seed: int
     walls: list[str]
     machine: str
+    asked: list[str]
     by_hand: dict[tuple[str, str], float] = field(default_factory=dict)
 
     @property
@@ -77,19 +104,24 @@ class Results:
 
     @property
     def lessons(self) -> list[str]:
-        return sorted({lesson for one in self.entries if one.counts for lesson in one.judged.lessons})
+        return sorted({lesson for one in self.entries for lesson in one.judged.lessons})
+
+    @property
+    def missing(self) -> list[str]:
+        """Return who is in the class and has nothing that counts."""
+        return [student for student in self.roster.rows if not self.of(student)]
 
     def of(self, student: str) -> list[Entry]:
-        return [one for one in self.entries if one.student == student and one.counts]
+        return [one for one in self.entries if one.student == student]
 
     def most(self, lesson: str) -> int:
         """Return the points that a lesson or project has."""
-        answers = {a.number: a.most for one in self.entries for a in one.judged.answers if _lesson(a.number) == lesson}
-        return sum(answers.values()) + (BY_HAND if lesson in project_names() else 0)
+        numbers = {a.number for one in self.entries for a in one.judged.answers if lesson_of(a.number) == lesson}
+        return sum(map(most_of, numbers)) + (BY_HAND if lesson in project_names() else 0)
 
     def points(self, student: str, lesson: str) -> float | None:
         """Return a student's points in a lesson, or None if nothing of it was handed in."""
-        answers = [a for one in self.of(student) for a in one.judged.answers if _lesson(a.number) == lesson]
+        answers = [a for one in self.of(student) for a in one.judged.answers if lesson_of(a.number) == lesson]
         given = self.by_hand.get((student, lesson))
         return sum(a.points for a in answers) + (given or 0) if answers or given is not None else None
 
@@ -107,11 +139,10 @@ class Results:
     def per_exercise(self) -> list[dict]:
         """Return for each exercise: how many right, partly right, wrong, not attempted, the commonest hint, tries."""
         rows = []
-        entries = [one for one in self.entries if one.counts]
-        for number in sorted({a.number for one in entries for a in one.judged.answers}):
-            answers = [a for one in entries for a in one.judged.answers if a.number == number]
+        for number in sorted({a.number for one in self.entries for a in one.judged.answers}):
+            answers = [a for one in self.entries for a in one.judged.answers if a.number == number]
             hints = Counter(a.sentence for a in answers if a.status in ("wrong", "partly right")).most_common(1)
-            tries = sorted(one.judged.tries[number] for one in entries if number in one.judged.tries)
+            tries = sorted(one.judged.tries[number] for one in self.entries if number in one.judged.tries)
             rows.append({
                 "number": number, "most": most_of(number), "mean": sum(a.points for a in answers) / len(answers),
                 **dict.fromkeys(KEYS, 0), **Counter(a.status.replace(" ", "_") for a in answers),
@@ -123,119 +154,178 @@ class Results:
         """Return (lesson, question, measured, [(student, predicted)]) of the whole class."""
         found: dict[tuple[str, str, str], list] = {}
         for one in self.entries:
-            for question, said, measured in one.judged.recalled if one.counts else ():
+            for question, said, measured in one.judged.recalled:
                 found.setdefault((one.judged.lessons[0], question, measured), []).append((one.student, said))
         return [(*key, who) for key, who in sorted(found.items())]
 
 
-def _lesson(number: str) -> str:
+def lesson_of(number: str) -> str:
     return number.partition(".")[0]
 
 
 def grade_folder(
     folder: Path, out: Path, seed: int, limits: Limits, jobs: int = 1, trust: bool = False, scores: bool = False,
-    roster: Roster | None = None, progress: Callable[..., Iterable] = lambda found, total: found,
+    roster: Roster | None = None, lessons: Sequence[str] = (),
+    progress: Callable[..., Iterable] = lambda found, total: found,
 ) -> Results:  # fmt: skip
     """Grade all submissions in a folder. `progress` wraps the iterator over results and is given its length.
 
-    Raises `SandboxError` if this machine has no walls and `trust` is not given.
+    lessons: what was set; without them, what two students handed in. Raises `AssignmentError` for a lesson that is not
+    there, and `SandboxError` if this machine has no walls and `trust` is not given.
     """
-    roster = roster or Roster()
-    stubs = function_names()
-    found, not_read = collect(folder, {one.name: one.path.stem for one in read_assignments()}, roster)
-    tried, machine = [], ""
-    if not trust:
-        require_walls()
-    (out / "judged").mkdir(parents=True, exist_ok=True)
-    with temporary_folder() as scratch, library_copy(scratch) as library:
-        if not trust:
-            tried, machine = self_test(library, limits)
-        settings = (stubs, seed, library, limits, trust, scores)
-        entries = sorted(progress(_all(found, out / "judged", settings, jobs), len(found)), key=lambda e: e.submission)
-    entries, unread = _one_for_each(entries)
-    not_read = sorted([*not_read, *unread])
+    roster, assignments = roster or Roster(), read_assignments()
+    asked = [one.name for one in read_assignments(list(lessons))] if lessons else []
+    found, not_read = collect(folder, {one.name: one.path.stem for one in assignments}, roster)
+    with tried_library(limits, trust) as (library, tried, machine):
+        (out / "judged").mkdir(parents=True, exist_ok=True)
+        settings = Settings(function_names(assignments), seed, library, limits, trust, scores)
+        judged = sorted(progress(_all(found, out / "judged", settings, jobs), len(found)), key=lambda e: e.submission)
+    entries, more = what_counts(judged, asked)
     by_hand = points_by_hand(out / "by_hand.csv", entries)
-    return Results(entries, not_read, roster, seed, tried, machine, by_hand)
+    return Results(entries, sorted([*not_read, *more]), roster, seed, tried, machine, asked, by_hand)
 
 
-def function_names() -> dict[str, str]:
+def function_names(assignments: list[Assignment]) -> dict[str, str]:
     """Return the function that each exercise asks for, "06.1" -> "raw_score", and each project, "P1" -> "localize"."""
-    assignments = read_assignments()
     stubs = {one.number: one.stub for each in assignments for one in each.exercises()}
     stubs |= {each.name: each.submission() for each in assignments if each.is_project}
     return {number: function_name(stub) for number, stub in stubs.items()}
 
 
-def _all(found: list[Submission], judged: Path, settings: tuple, jobs: int) -> Iterator[Entry]:
+@contextlib.contextmanager
+def tried_library(limits: Limits, trust: bool) -> Iterator[tuple[Path, list[str], str]]:
+    """Yield the library for the sandbox, what was tried against the walls in vain, and what this machine is.
+
+    Raises `SandboxError` if the walls do not hold, unless `trust` is given.
+    """
+    if not trust:
+        require_unseen(REPOSITORY)
+        require_walls()
+    with temporary_folder() as scratch, library_copy(scratch) as library:
+        tried, machine = ([], "") if trust else self_test(library, limits)
+        yield library, tried, machine
+
+
+def require_unseen(*places: Path) -> None:
+    """Raise `SandboxError` for a place in a folder that every submission can read, such as /usr."""
+    for place in places:
+        for seen in (*SYSTEM, sys.prefix, sys.base_prefix):
+            if place.resolve().is_relative_to(Path(seen).resolve()):
+                told = f"nothing was graded: {place} lies in {seen}, which students' code can read"
+                raise SandboxError(f"{told}. Move it, for example into your home folder")
+
+
+def _all(found: list[Submission], judged: Path, settings: Settings, jobs: int) -> Iterator[Entry]:
+    spent: Counter[str] = Counter()  # seconds of each student
     with ThreadPoolExecutor(jobs) as pool:
-        for future in as_completed([pool.submit(_one, one, judged, settings) for one in found]):
+        for future in as_completed([pool.submit(_one, one, judged, settings, spent) for one in found]):
             yield future.result()
 
 
-def _one(one: Submission, judged: Path, settings: tuple) -> Entry:
+def _one(one: Submission, judged: Path, settings: Settings, spent: Counter[str]) -> Entry:
     """Judge one submission in a process of its own, unless it was judged before."""
     try:
-        content = read_plain(one.path)
+        content, changed = read_plain(one.path)
     except OSError as error:
         return Entry(one, Judged(why=f"the file cannot be read: {error.strerror or error}"))
-    stubs, seed, library, limits, trust, scores = settings
     suffix = one.path.suffix.lower()
-    key = repr((one.guess, seed, limits, trust, scores, sorted(stubs.items()), suffix)).encode()
-    name = hashlib.sha256(key + content).hexdigest()[:32]
-    path = judged / f"{name}.json"
+    key = repr((one.guess, settings._replace(library=Path()), suffix)).encode()
+    path = judged / f"{hashlib.sha256(key + content).hexdigest()[:32]}.json"
     if not path.is_file():
-        copy = library / "handed_in" / name / f"submission{suffix}"  # what is judged is what was read
+        if spent[one.student] > STUDENT_FILES * settings.seconds:
+            told = f"the student's other files took {spent[one.student]:.0f} seconds"
+            return Entry(one, Judged(why=f"was not judged yet, because {told}. Grade the folder again to go on"))
+        began = time.monotonic()
+        copy = settings.library / "handed_in" / path.stem / f"submission{suffix}"  # what is judged is what was read
         copy.parent.mkdir(parents=True, exist_ok=True)
         copy.write_bytes(content)
-        process = FORKS.Process(target=judge_to_file, args=(one._replace(path=copy), path, *settings))
+        process = FORKS.Process(target=judge_to_file, args=(one._replace(path=copy), path, settings))
         process.start()
-        process.join(SCORE_SECONDS if scores else JUDGE_SECONDS)
-        process.kill()
-        process.join()
+        process.join(settings.seconds)
+        if process.is_alive():
+            process.kill()
+            process.join()
+            keep_no_verdict(path, f"{settings.seconds:g} seconds")
+        spent[one.student] += time.monotonic() - began
     try:
         found = from_json(json.loads(path.read_text(encoding="utf-8")))
     except (OSError, ValueError, TypeError, KeyError):
-        found = Judged(why="it could not be judged: comparing its answers took too long or too much memory")
-    return Entry(one, found, bool(CANARY.search(content)))
+        found = Judged(why="could not be judged, because its judge ended. Grade the folder again")
+    return Entry(one, found, bool(CANARY.search(content)), changed)
 
 
-def read_plain(path: Path) -> bytes:
-    """Return a plain file's content, whatever its name points to by now. Raises `OSError` for anything else."""
+def read_plain(path: Path) -> tuple[bytes, int]:
+    """Return a plain file's content and when it changed, whatever its name means by now. Raises `OSError`."""
     with os.fdopen(os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK), "rb") as file:
         kind = os.fstat(file.fileno())
         if not stat.S_ISREG(kind.st_mode) or kind.st_size > MAX_FILE:
             raise OSError(f"it is no plain file of at most {MAX_FILE >> 20} MB")
-        return file.read(MAX_FILE)
+        return file.read(MAX_FILE), kind.st_mtime_ns
 
 
-def judge_to_file(one: Submission, path: Path, stubs: dict, seed: int, library: Path, limits: Limits, trust: bool,
-                  scores: bool) -> None:  # fmt: skip
-    """Judge one submission and write the result. The process may take so much time and memory, and no more."""
+def judge_to_file(one: Submission, path: Path, settings: Settings) -> None:
+    """Judge one submission and write the result. The process may take so much memory, and no more."""
     # The soft limit alone, because the sandbox sets its own limits, which may be higher.
     resource.setrlimit(resource.RLIMIT_AS, (JUDGE_MEMORY_MB << 20, resource.getrlimit(resource.RLIMIT_AS)[1]))
-    judged = judge(one.path, stubs, seed, library, limits, one.guess, trust, scores)
-    atomic_write(path, json.dumps(asdict(judged)))
-
-
-def _one_for_each(entries: list[Entry]) -> tuple[list[Entry], list[NotRead]]:
-    """Let the newest file of a student for a lesson count; return all that could be read, and why others were not."""
-    not_read = [NotRead(e.student, e.name, e.judged.why) for e in entries if e.judged.why]
-    read = [e for e in entries if not e.judged.why]
-    newest: dict[tuple[str, str], Entry] = {}
-    for entry in sorted(read, key=lambda e: (modified(e.submission.path), e.name)):
-        for lesson in entry.judged.lessons:
-            if (old := newest.get((entry.student, lesson))) is not None and old.counts:
-                old.counts = False
-                not_read.append(NotRead(old.student, old.name, f"is older than {entry.name}, which counts"))
-            newest[entry.student, lesson] = entry
-    return read, not_read
-
-
-def modified(path: Path) -> int:
+    functions, seed, library, limits, trust, scores = settings
     try:
-        return path.lstat().st_mtime_ns
-    except OSError:  # it has gone meanwhile
-        return 0
+        judged = judge(one.path, functions, seed, library, limits, one.guess, trust, scores)
+        judged.stopped = stopped_statements(judged, one.path, settings)
+        atomic_write(path, json.dumps(asdict(judged)))
+    except MemoryError:
+        keep_no_verdict(path, f"{JUDGE_MEMORY_MB} MB")
+
+
+def keep_no_verdict(path: Path, took: str) -> None:
+    """Write that a file could not be judged, so that the next run does not try it again."""
+    why = f"could not be judged: its answers together took more than {took} (kept in judged/{path.name})"
+    atomic_write(path, json.dumps(asdict(Judged(why=why))))
+
+
+def stopped_statements(judged: Judged, path: Path, settings: Settings) -> list[str]:
+    """Return which statements of a file stop, and how, for the student.
+
+    They run once more, in a sandbox to which no input was given. So no word of them can carry an input out.
+    """
+    stops = re.compile(r"cell \d+, line|the file, line")
+    numbers = [one.number for one in judged.answers if any(stops.match(remark) for remark in one.remarks)]
+    found: list[str] = []
+    if numbers:
+        with contextlib.suppress(AnswerFormatError):
+            with Sandbox(path, settings.library, settings.limits, settings.trust) as box:
+                for number in numbers:
+                    head = box.run(number, settings.functions[number], pickle.dumps([])).head
+                    found += [one_line(text) for text in head.get("problems", [])]
+    return list(dict.fromkeys(found))[:MAX_STOPPED]
+
+
+def what_counts(judged: list[Entry], asked: list[str]) -> tuple[list[Entry], list[NotRead]]:
+    """Return what counts, and why the rest does not: the newest file of each student, for each lesson that was set.
+
+    If `asked` is empty, a lesson counts if two students handed it in; if there is no such lesson, all count.
+    """
+    not_read = {NotRead(e.student, e.name, e.judged.why) for e in judged if e.judged.why}
+    read = [entry for entry in judged if not entry.judged.why]
+    handed_in = Counter(lesson for _, lesson in {(e.student, lesson) for e in read for lesson in e.judged.lessons})
+    common = [lesson for lesson, students in handed_in.items() if students > 1] or list(handed_in)
+    not_read |= {NotRead("", f"lesson {lesson}", "was handed in by nobody") for lesson in set(asked) - set(handed_in)}
+    other = "was not asked for" if asked else "was handed in by nobody else. If it was set, name it with --lessons"
+    newest: dict[tuple[str, str], str] = {}
+    entries = []
+    for entry in sorted(read, key=lambda e: (e.changed, e.name), reverse=True):
+        mine = []
+        for lesson in entry.judged.lessons:
+            if lesson not in (asked or common):
+                not_read.add(NotRead(entry.student, entry.name, f"holds lesson {lesson}, which {other}"))
+            elif newer := newest.get((entry.student, lesson)):
+                not_read.add(NotRead(entry.student, entry.name, f"is older than {newer}, which counts for {lesson}"))
+            else:
+                mine.append(lesson)
+                newest[entry.student, lesson] = entry.name
+        if mine:
+            answers = [answer for answer in entry.judged.answers if lesson_of(answer.number) in mine]
+            entries.append(replace(entry, judged=replace(entry.judged, lessons=mine, answers=answers)))
+    return sorted(entries, key=lambda e: e.submission), sorted(not_read)
 
 
 def points_by_hand(path: Path, entries: list[Entry]) -> dict[tuple[str, str], float]:
@@ -243,28 +333,23 @@ def points_by_hand(path: Path, entries: list[Entry]) -> dict[tuple[str, str], fl
 
     Raises `ValueError` if a row holds no number from 0 to `BY_HAND`.
     """
-    rows = []
-    if path.is_file():
-        rows = list(csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines()))
-        rows = [{key: (value or "").removeprefix("'") for key, value in row.items() if key} for row in rows]
-    known = {(row["student"], row["project"]) for row in rows}
-    for one in entries:
-        for lesson in one.judged.lessons if one.counts else ():
-            if lesson in project_names() and (one.student, lesson) not in known:
-                rows.append({"student": one.student, "project": lesson, "points": "", "remark": ""})
-    if not rows:
-        return {}
-    with open(path, "w", encoding="utf-8-sig", newline="") as file:
-        writer = csv.DictWriter(file, ["student", "project", "points", "remark"])
-        writer.writeheader()
-        writer.writerows({key: harmless(value) for key, value in row.items()} for row in rows)
-    given = {}
-    for row in rows:
-        if row["points"].strip():
-            points = float(row["points"].replace(",", "."))
-            if not 0 <= points <= BY_HAND:
-                raise ValueError(
-                    f"{path}: {row['student']}, {row['project']}: points are from 0 to {BY_HAND}, not {points}"
-                )
-            given[row["student"], row["project"]] = points
+    projects = [(one.student, name) for one in entries for name in one.judged.lessons if name in project_names()]
+    rows = {key: {"points": "", "remark": ""} for key in projects}
+    for row in read_table(path) if path.is_file() else ():
+        row = {heading: text.removeprefix("'") for heading, text in row.items()}
+        rows[row["student"], row["project"]] = {"points": row["points"].strip(), "remark": row["remark"]}
+    if rows:
+        told = [[*key, row["points"], row["remark"]] for key, row in rows.items()]
+        atomic_write(path, table_text([["student", "project", "points", "remark"], *told]))
+    given = {key: float(row["points"].replace(",", ".")) for key, row in rows.items() if row["points"]}
+    for (student, project), points in given.items():
+        if not 0 <= points <= BY_HAND:
+            raise ValueError(f"{path}: {student}, {project}: points are from 0 to {BY_HAND}, not {points}")
     return given
+
+
+def table_text(rows: Iterable[Sequence[object]]) -> str:
+    """Return rows as CSV with a byte order mark, every text quoted; an apostrophe stands before a formula's sign."""
+    text = io.StringIO()
+    csv.writer(text, quoting=csv.QUOTE_ALL, lineterminator="\r\n").writerows([map(harmless, row) for row in rows])
+    return "\ufeff" + text.getvalue()

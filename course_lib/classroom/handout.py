@@ -15,8 +15,7 @@ the same folder, letter by letter.
 import ast
 import hashlib
 import json
-import shutil
-import subprocess
+import re
 import zipfile
 from collections.abc import Callable, Iterable
 from functools import partial
@@ -29,7 +28,7 @@ from course_lib.classroom.nbgrader_course import write_course
 from course_lib.classroom.rubric import rubric
 from course_lib.classroom.student_copies import solved_notebook, write_copies
 from course_lib.classroom.templates import template
-from course_lib.files import staging_dir, temporary_folder
+from course_lib.files import staging_dir
 from course_lib.paths import REPOSITORY
 
 MARKER = "handout.json"
@@ -37,14 +36,9 @@ MADE_BY = "course.py handout"
 MADE_FOR_NBGRADER = {"source", "nbgrader_config.py", "README.md"}
 """What we put into teacher/nbgrader; whatever else lies there is the teacher's work."""
 READMES = {".": "handout.md", "teacher": "teacher.md", "teacher/nbgrader": "nbgrader.md", "student": "student.md"}
-NOT_FOR_STUDENTS = (
-    "tests",
-    "tools",
-    "course_lib/classroom",
-    "notebooks",
-    "TEACHING.md",
-)
-NOT_FOR_STUDENTS += (".ci", "CONTRIBUTING.md", "course_lib/commands/grade.py", "course_lib/commands/handout.py")
+FOR_STUDENTS = (".gitignore", "LICENSE", "README.md", "RESULTS.md", "course.py", "course_lib", "data")
+FOR_STUDENTS += ("environment-bench.txt", "environment.txt", "pyproject.toml")
+NOT_FOR_STUDENTS = re.compile(r"course_lib/(classroom/.*|commands/(grade|handout)\.py)|.*/__pycache__/.*")
 
 
 class HandoutError(ValueError):
@@ -124,25 +118,15 @@ def write_json(path: Path, value: dict) -> None:
 
 def write_package(path: Path, student: Path) -> None:
     """Write the course for students as a zip file: no tests, no grader, no history, students' copies as notebooks/."""
-    listed = subprocess.run(["git", "ls-files", "-z"], cwd=REPOSITORY, capture_output=True, check=False)
-    names = listed.stdout.decode().split("\0") if listed.returncode == 0 else []
-    if not names:  # a copy without git
-        names = [str(one.relative_to(REPOSITORY)) for one in REPOSITORY.rglob("*") if ".venv" not in one.parts]
-    with temporary_folder() as temporary:
-        course = temporary / "course"
-        for name in names:
-            if name and not any(f"{name}/".startswith(f"{one}/") for one in NOT_FOR_STUDENTS):
-                source = REPOSITORY / name
-                if source.is_file() and not source.is_symlink():
-                    (course / name).parent.mkdir(parents=True, exist_ok=True)
-                    shutil.copy2(source, course / name)
-        shutil.copytree(student, course / "notebooks")
-        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-            for file in sorted(course.rglob("*")):
-                if file.is_file():
-                    info = zipfile.ZipInfo(str(file.relative_to(temporary)), (2026, 1, 1, 0, 0, 0))
-                    info.external_attr, info.compress_type = file.stat().st_mode << 16, zipfile.ZIP_DEFLATED
-                    archive.writestr(info, file.read_bytes())
+    course = [place for name in FOR_STUDENTS for place in (REPOSITORY / name, *(REPOSITORY / name).rglob("*"))]
+    files = {one.relative_to(REPOSITORY).as_posix(): one for one in course if not one.is_symlink()}
+    files |= {f"notebooks/{one.relative_to(student).as_posix()}": one for one in student.rglob("*")}
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, file in sorted(files.items()):
+            if file.is_file() and not NOT_FOR_STUDENTS.fullmatch(name):
+                info = zipfile.ZipInfo(f"course/{name}", (2026, 1, 1, 0, 0, 0))  # the same content, the same archive
+                info.external_attr, info.compress_type = file.stat().st_mode << 16, zipfile.ZIP_DEFLATED
+                archive.writestr(info, file.read_bytes())
 
 
 def require_place(out: Path) -> None:

@@ -50,7 +50,10 @@ class Graded:
 
 @dataclass
 class Judged:
-    """What one file came to. why: why it was not read, or "". shapes: digests of the answers' syntax trees."""
+    """What one file came to. why: why it was not read, or "". stopped: which of its statements stop.
+
+    shapes: digests of the answers' syntax trees.
+    """
 
     lessons: list[str] = field(default_factory=list)
     answers: list[Graded] = field(default_factory=list)
@@ -58,6 +61,7 @@ class Judged:
     tries: dict[str, int] = field(default_factory=dict)
     recalled: list[list[str]] = field(default_factory=list)
     shapes: dict[str, str] = field(default_factory=dict)
+    stopped: list[str] = field(default_factory=list)
     why: str = ""
 
 

@@ -51,11 +51,8 @@ def write_course(folder: Path, assignments: list[Assignment], canary: str) -> No
 def files_used(notebook: nbformat.NotebookNode) -> list[str]:
     """Return the pictures and scenes that a notebook shows."""
     texts = [cell.source for cell in notebook.cells if cell.cell_type == "markdown"]
-    texts += [
-        str(output.get("data", {}).get("text/html", ""))
-        for cell in notebook.cells
-        for output in cell.get("outputs", [])
-    ]
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    texts += [str(output.get("data", {}).get("text/html", "")) for output in outputs]
     found = re.findall(rf"(?<![\w/])((?:{'|'.join(FOLDERS)})/[\w.-]+)", "\n".join(texts))
     return sorted({name for name in found if (NOTEBOOKS / name).is_file()})
 
@@ -70,19 +67,16 @@ def source_notebook(assignment: Assignment, canary: str, resolve: Callable | Non
             cell.source += f"\n{BEGIN}\n# {canary}\n{answers[number]}\n{END}"
             cell.metadata["nbgrader"] = mark(f"answer-{number}", solution=True)
         if tag_of(cell) in ("check", "submission"):
-            source = (
-                f"# {number}: {most_of(number)} points, given when it is handed in. Keep this cell; it does nothing."
-            )
+            most = most_of(number)
+            source = f"# {number}: {most} points, given when it is handed in. Keep this cell; it does nothing."
             graded = nbformat.v4.new_code_cell(source, id=f"points-{number.replace('.', '-')}")
-            graded.metadata["nbgrader"] = mark(f"points-{number}", grade=True, locked=True) | {
-                "points": most_of(number)
-            }
+            graded.metadata["nbgrader"] = mark(f"points-{number}", grade=True, locked=True, points=most)
             cells.append(graded)
     notebook.cells = cells
     return notebook
 
 
-def mark(name: str, grade: bool = False, solution: bool = False, locked: bool = False) -> dict:
+def mark(name: str, **kind: bool | int) -> dict:
     """Return nbgrader's metadata of a cell; a grade id has no dots."""
-    kind = {"grade": grade, "solution": solution, "locked": locked, "task": False}
-    return kind | {"grade_id": name.replace(".", "-"), "schema_version": SCHEMA}
+    named = {"grade_id": name.replace(".", "-"), "schema_version": SCHEMA}
+    return {"grade": False, "solution": False, "locked": False, "task": False} | kind | named

@@ -26,10 +26,10 @@ from nbgrader.preprocessors import (
 from traitlets import Bool, Unicode
 from traitlets.config import Config
 
-from course_lib.classroom.grading import function_names
+from course_lib.classroom.assignment_cells import read_assignments
+from course_lib.classroom.grading import function_names, require_unseen, tried_library
 from course_lib.classroom.judge import Judged, judge
-from course_lib.classroom.sandbox import Limits, library_copy, require_walls
-from course_lib.classroom.self_test import self_test
+from course_lib.classroom.sandbox import Limits
 from course_lib.classroom.student_copies import write_notebook
 from course_lib.files import temporary_folder
 
@@ -41,6 +41,8 @@ class Judge(NbGraderPreprocessor):
     trust = Bool(False, help="judge without walls: only where you have read every file").tag(config=True)
 
     def preprocess(self, nb: NotebookNode, resources: dict) -> tuple[NotebookNode, dict]:
+        if not self.trust:
+            require_unseen(Path(self.seed_file))
         seed = json.loads(Path(self.seed_file).read_text(encoding="utf-8"))["seed"]
         judged = judge_notebook(nb, seed, self.trust)
         given = {one.number.replace(".", "-"): one for one in judged.answers}
@@ -62,22 +64,19 @@ class Judge(NbGraderPreprocessor):
 
 def judge_notebook(nb: NotebookNode, seed: int, trust: bool) -> Judged:
     """Judge one notebook, its exercises and a project's score."""
-    library = _library(trust)
+    library, functions = _prepared(trust)
     with temporary_folder() as folder:
         write_notebook(folder / "submission.ipynb", nb)
-        return judge(folder / "submission.ipynb", function_names(), seed, library, Limits(), trust=trust, scores=True)
+        return judge(folder / "submission.ipynb", functions, seed, library, Limits(), trust=trust, scores=True)
 
 
 @functools.cache
-def _library(trust: bool) -> Path:
-    """Copy the library once for all notebooks of this process, and try the walls."""
+def _prepared(trust: bool) -> tuple[Path, dict[str, str]]:
+    """Return the library for the sandbox and the functions that are asked for, once for all notebooks of a process."""
     stack = contextlib.ExitStack()
     atexit.register(stack.close)
-    library = stack.enter_context(library_copy(stack.enter_context(temporary_folder())))
-    if not trust:
-        require_walls()
-        self_test(library, Limits())
-    return library
+    library, _, _ = stack.enter_context(tried_library(Limits(), trust))
+    return library, function_names(read_assignments())
 
 
 def configure(config: Config, course: Path) -> None:

@@ -1,15 +1,11 @@
 """What a grading writes: the teacher's page, a feedback page for each student, and tables for an LMS."""
 
-import csv
-import io
 import itertools
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from course_lib.classroom.answers import harmless
-from course_lib.classroom.grading import Entry, Results
-from course_lib.classroom.judge import failure_kind
+from course_lib.classroom.grading import Results, table_text
 from course_lib.classroom.points import BY_HAND
 from course_lib.classroom.templates import template
 from course_lib.files import atomic_write
@@ -17,23 +13,15 @@ from course_lib.lessons.kit.projects import project_names
 
 MARKS = {"right": "\u2713", "partly right": "\u00bd", "wrong": "\u2717", "not attempted": "\u2013"}
 """A sign beside the word, so that a column can be skimmed."""
-PLACE = re.compile(r"((?:cell \d{1,3}|the file), line \d{1,4}) (.*)")
-MAX_PLACES = 2  # on a student's page: a hostile answer can forge them, to carry an input out
-
-
-def places(entry: Entry) -> list[str]:
-    """Return which statements of a notebook failed and how, without a word of the student's own making."""
-    remarks = [PLACE.match(remark) for one in entry.judged.answers for remark in one.remarks]
-    return list(dict.fromkeys(f"{one[1]} {failure_kind(one[2])}" for one in remarks if one))[:MAX_PLACES]
 
 
 def write_results(results: Results, out: Path) -> list[str]:
     """Write all pages and tables into a folder and return their names."""
-    values = {"results": results, "marks": MARKS, "projects": project_names(), "by_hand": BY_HAND, "places": places}
+    values = {"results": results, "marks": MARKS, "projects": project_names(), "by_hand": BY_HAND}
     atomic_write(out / "grades.html", template("grades.html").render(values))
     tables = {"totals.csv": totals(results), "answers.csv": answers(results)}
     for name, rows in tables.items():
-        atomic_write(out / name, written(rows))
+        atomic_write(out / name, table_text(rows))
     (out / "feedback").mkdir(exist_ok=True)
     taken: dict[str, str] = {}
     for student in results.students:
@@ -77,12 +65,3 @@ def answers(results: Results) -> Iterable[Sequence[object]]:
                 inputs, tries = [one.right_inputs, one.inputs], entry.judged.tries.get(one.number, "")
                 said = [f"{one.points:g}", one.most, *inputs, tries, one.sentence, entry.name]
                 yield [student, one.number, one.status, *said]
-
-
-def written(rows: Iterable[Sequence[object]]) -> str:
-    """Return rows as CSV with a byte order mark, every text quoted; an apostrophe stands before a formula's sign."""
-    text = io.StringIO()
-    writer = csv.writer(text, quoting=csv.QUOTE_ALL, lineterminator="\r\n")
-    for row in rows:
-        writer.writerow([harmless(cell) for cell in row])
-    return "\ufeff" + text.getvalue()

@@ -4,6 +4,7 @@ The folder works by itself: links between lessons, the glossary, pictures and sc
 link to anything else becomes plain words. What stands between `<!-- solutions -->` and `<!-- /solutions -->` goes.
 """
 
+import posixpath
 import re
 import shutil
 from collections.abc import Callable
@@ -78,24 +79,18 @@ def student_text(text: str, resolve: Resolve | None = None) -> str:
     return LINK.sub(one, ABOUT_SOLUTIONS.sub("", text))
 
 
-def place_of(assignment: Assignment) -> PurePosixPath:
-    """Return where a lesson lies in a folder of copies: as in notebooks/."""
-    return PurePosixPath(assignment.path.relative_to(NOTEBOOKS).as_posix())
-
-
 def write_copies(folder: Path, assignments: list[Assignment], make: Callable = student_notebook) -> None:
     """Write lessons, pages, pictures and scenes into an empty folder; `make` is `student_notebook` or another."""
     for name in FOLDERS:
         shutil.copytree(NOTEBOOKS / name, folder / name, ignore=shutil.ignore_patterns("yours", ".*"))
-    places = {place_of(assignment) for assignment in assignments}
-    places |= {PurePosixPath(name) for name in PAGES} | {PurePosixPath("projects")}
+    lessons = {PurePosixPath(one.path.relative_to(NOTEBOOKS).as_posix()): one for one in assignments}
+    places = {*lessons, *map(PurePosixPath, PAGES), PurePosixPath("projects")}
     for page in PAGES:
         path = folder / page
         path.parent.mkdir(parents=True, exist_ok=True)
         text = (NOTEBOOKS / page).read_text(encoding="utf-8")
         path.write_text(student_text(text, within(places, PurePosixPath(page))), encoding="utf-8")
-    for assignment in assignments:
-        place = place_of(assignment)
+    for place, assignment in lessons.items():
         write_notebook(folder / place, make(assignment, within(places, place)))
 
 
@@ -103,11 +98,8 @@ def within(places: set[PurePosixPath], page: PurePosixPath) -> Resolve:
     """Return the `Resolve` for links from `page`: the link if it leads to a file of the folder, else None."""
 
     def resolve(target: str) -> str | None:
-        parts: list[str] = list(page.parent.parts)
-        for part in PurePosixPath(target).parts:
-            parts = parts[:-1] if part == ".." else [*parts, part]
-        meant = PurePosixPath(*parts)
-        return target if meant in places or (parts and parts[0] in FOLDERS) else None
+        meant = PurePosixPath(posixpath.normpath(page.parent / target))
+        return target if meant in places or meant.parts[0] in FOLDERS else None
 
     return resolve
 

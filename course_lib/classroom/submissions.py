@@ -13,18 +13,26 @@ import os
 import re
 import stat
 import unicodedata
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-MAX_FILES = 20_000
+MAX_FILES = 100
+"""Of one student that are graded, and as many that are named as not read: a student can hand in no more work."""
 MAX_DEPTH = 20  # folders within folders
 READ = (".ipynb", ".py")
 ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".7z", ".rar", ".bz2", ".xz")
+OF_PROGRAMS = re.compile(
+    r"__MACOSX|__pycache__|\._.*|\.(DS_Store|git|gitignore|idea|ipynb_checkpoints|vscode|venv|virtual_documents)"
+)
+"""What programs put beside a student's work."""
 MOODLE = re.compile(r"^(?P<name>.+)_(?P<id>\d+)_assignsubmission_\w+?_?$")
 CANVAS = re.compile(r"^(?P<name>[^\W\d_]+?)_(?:LATE_)?(?P<id>\d+)_\d+_(?P<rest>.+)$")
 VERSION = re.compile(r"(?:[ _-]*\(\d+\)|[ _-]+v?\d{1,2}|[ _-]+(?:final|copy|copie|kopie|late))+$", re.IGNORECASE)
+HIDDEN = (".", "__")
+NOBODYS = "does not say whose it is: name it as in alice_06.ipynb, or put it into a folder of the student's name"
 DATE = re.compile(r"[ _-]*(?:19|20)\d\d[-_.]?\d\d[-_.]?\d\d(?:[T_-]\d{4,6})?")
 NAMES = ("name", "full name", "student", "user", "username", "login", "email address", "email", "sis login id")
 NAMES += ("id", "identifier", "id number", "sis user id", "student id")
@@ -74,43 +82,48 @@ def collect(folder: Path, lessons: dict[str, str], roster: Roster | None = None)
     if not folder.is_dir() or not any(folder.iterdir()):
         what = "is empty" if folder.is_dir() else "is not a folder"
         raise SubmissionError(f"{folder} {what}: name the folder that holds what the students handed in")
-    found, not_read = [], []
+    found: list[Submission] = []
+    not_read: list[NotRead] = []
+    count: Counter[tuple[str, bool]] = Counter()
     for path in files_in(folder):
         relative = path.relative_to(folder)
         student, guess = whose(relative, lessons, roster)
-        why = refused(path)
-        if not why and not student:
-            why = (
-                "does not say whose it is: name it as in alice_06.ipynb, or put it into a folder of the student's name"
-            )
+        why = refused(path) or ("" if student else NOBODYS)
+        count[student, bool(why)] += 1
+        if count[student, bool(why)] > MAX_FILES:
+            continue
         if why:
             not_read.append(NotRead(student, shown(relative), why))
         else:
             found.append(Submission(student, path, guess))
+    for (student, not_graded), files in count.items():
+        if files > MAX_FILES:
+            why = f"only {MAX_FILES} files of a student are {'named here' if not_graded else 'graded'}"
+            not_read.append(NotRead(student, f"{files - MAX_FILES:,} more files", why))
     return sorted(found), sorted(not_read)
 
 
-def files_in(folder: Path) -> list[Path]:
-    """Return all files in a folder and below, without hidden ones. Links stand for themselves."""
-    found = []
+def files_in(folder: Path) -> Iterator[Path]:
+    """Yield all files in a folder and below, and the folders into which we do not look."""
     for place, folders, names in os.walk(folder):
         deep = len(Path(place).relative_to(folder).parts) >= MAX_DEPTH
-        folders[:] = [] if deep else sorted(name for name in folders if not name.startswith((".", "__")))
-        links = [name for name in folders if (Path(place) / name).is_symlink()]
-        found += [Path(place) / name for name in sorted([*names, *links]) if not name.startswith(".")]
-        if len(found) > MAX_FILES:
-            raise SubmissionError(f"{folder} holds more than {MAX_FILES:,} files: is it the right folder?")
-    return found
+        closed = [name for name in folders if deep or name.startswith(HIDDEN) or (Path(place) / name).is_symlink()]
+        folders[:] = sorted(set(folders) - set(closed))
+        yield from (Path(place) / name for name in sorted([*names, *closed]) if not OF_PROGRAMS.fullmatch(name))
 
 
 def refused(path: Path) -> str:
-    """Return why a file is not read, or ""."""
+    """Return why a file or a folder is not read, or ""."""
     try:
         mode = path.lstat().st_mode
     except OSError as error:
         return f"cannot be looked at: {error.strerror}"
     if stat.S_ISLNK(mode):
         return "is a link: links are not followed"
+    if path.name.startswith(HIDDEN if stat.S_ISDIR(mode) else "."):
+        return f"is hidden, because its name begins with {path.name[0]}: rename it, then grade the folder again"
+    if stat.S_ISDIR(mode):
+        return f"is a folder within {MAX_DEPTH} others"
     if not stat.S_ISREG(mode):
         return "is no plain file"
     if path.suffix.lower() in ARCHIVES:
@@ -122,17 +135,13 @@ def whose(relative: Path, lessons: dict[str, str], roster: Roster) -> tuple[str,
     """Return the student and the lesson that a file's place and name tell; "" for what they do not tell."""
     stem = shown(relative.name.removesuffix(relative.suffix))
     folders = [shown(part) for part in relative.parts[:-1]]
-    names, rest = [], stem
-    for part in (folders[0] if folders else stem,):
-        if match := MOODLE.match(part) or CANVAS.match(part):
-            names, rest = [match["id"], match["name"]], match.groupdict().get("rest", stem)
-            break
+    first, rest = folders[0] if folders else stem, stem
+    if match := MOODLE.match(first) or CANVAS.match(first):
+        names, rest = [match["id"], match["name"]], match.groupdict().get("rest", stem)
+    else:
+        names = [first if folders else _without_lesson(VERSION.sub("", DATE.sub("", stem)), lessons)]
     words = re.findall(r"[^\W_]+", DATE.sub("", rest))
     guesses = [word.upper() for word in [*words, *folders[1:]] if word.upper() in lessons]
-    if not names and folders:
-        names = [folders[0]]
-    if not names:
-        names = [_without_lesson(VERSION.sub("", DATE.sub("", stem)), lessons)]
     return roster.find(*names, *folders[:1]) or names[-1], guesses[0] if guesses else ""
 
 
@@ -152,33 +161,40 @@ def plain(name: str) -> str:
 
 
 def read_roster(path: Path) -> Roster:
-    """Read a class list: a CSV file with a heading, as an LMS exports it. Raises `SubmissionError`."""
-    try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-        dialect = csv.Sniffer().sniff(text.splitlines()[0], delimiters=",;\t")
-        reader = csv.DictReader(text.splitlines(), dialect=dialect)
-        rows = [{k: v or "" for k, v in row.items() if k is not None} for row in reader]
-    except (OSError, UnicodeDecodeError, csv.Error, IndexError) as error:
-        raise SubmissionError(f"--roster {path} is not a CSV file with a heading ({error})") from error
-    known = {column.strip().casefold(): column for column in reader.fieldnames or ()}
+    """Read a class list, as an LMS exports it. Raises `SubmissionError`."""
+    rows = read_table(path)
+    headings = tuple(rows[0]) if rows else ()
+    known = {heading.strip().casefold(): heading for heading in headings}
     columns = [known[name] for name in NAMES if name in known]
     first, last = known.get("first name"), known.get("last name") or known.get("surname")
     if not columns and not (first and last):
-        raise SubmissionError(f"--roster {path} has no column that names students: call one of them {', '.join(NAMES)}")
+        raise SubmissionError(f"{path} has no column that names students: call one of them {', '.join(NAMES)}")
     by_key, keys = {}, {}
     for row in rows:
-        told = [row[column] for column in columns if row[column].strip()]
-        if first and last:
-            told = [f"{row[first]} {row[last]}", *told]
-        if told:
-            by_key[told[0]] = row
-            for name in told:
-                digits = re.findall(r"\d+", name)
-                extra = [name.partition("@")[0], re.sub(r"\W", "", name)]
-                extra += ["".join(reversed(name.split(maxsplit=1)))] if " " in name else []
-                for one in [name, *extra, *([digits[-1]] if digits and "participant" in name.casefold() else [])]:
-                    keys.setdefault(plain(one), told[0])
-    return Roster(tuple(reader.fieldnames or ()), by_key, keys)
+        told = [f"{row[first]} {row[last]}"] if first and last else []
+        told += [row[column] for column in columns if row[column].strip()]
+        for name in told:
+            by_key.setdefault(told[0], row)
+            forms = [name, name.partition("@")[0], re.sub(r"\W", "", name)]
+            forms += ["".join(reversed(name.split(maxsplit=1)))] if " " in name else []
+            forms += re.findall(r"(\d+)\D*$", name) if "participant" in name.casefold() else []
+            for form in forms:
+                keys.setdefault(plain(form), told[0])
+    return Roster(headings, by_key, keys)
+
+
+def read_table(path: Path) -> list[dict[str, str]]:
+    """Read a CSV file with a heading, with commas, semicolons or tabs, as a spreadsheet or an LMS writes it.
+
+    Raises `SubmissionError` if it is none.
+    """
+    try:
+        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+        dialect = csv.Sniffer().sniff(lines[0], delimiters=",;\t")
+        rows = list(csv.DictReader(lines, dialect=dialect))
+        return [{heading: text or "" for heading, text in row.items() if heading is not None} for row in rows]
+    except (OSError, UnicodeDecodeError, csv.Error, IndexError) as error:
+        raise SubmissionError(f"{path} is not a CSV file with a heading ({error})") from error
 
 
 def shown(name: object) -> str:

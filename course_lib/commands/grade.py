@@ -18,11 +18,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--out", type=Path, metavar="DIR", help=told)
     told = "the class list, as your LMS exports it: who is missing, and its columns come back beside the points"
     add("--roster", type=Path, metavar="CSV", help=told)
+    told = "what you set, such as 06 07 P1; the rest is not graded (default: what more than one student handed in)"
+    add("--lessons", nargs="+", default=[], metavar="NN", help=told)
     told = "draws the hidden inputs; keep it to yourself (default: that of DIR, else a new one)"
     add("--seed", type=int, help=told)
     options.add_number(parser, "--jobs", "submissions at a time (default: one a processor)")
-    add("--seconds", type=float, default=60.0, metavar="S", help="all calls of one answer (default: %(default)g)")
-    add("--call-seconds", type=float, default=20.0, metavar="S", help="one call of an answer (default: %(default)g)")
+    told = (
+        "all calls of one answer; one call has a third of it, a whole file four times that and a minute (default: 60)"
+    )
+    add("--seconds", type=float, default=60.0, metavar="S", help=told)
     add("--memory", type=int, default=1500, metavar="MB", help="memory of one submission (default: %(default)d)")
     options.add_flag(parser, "--scores", "also run the projects' last functions: minutes for each submission")
     told = "grade without walls, with your rights: only if you have read every file"
@@ -33,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
     from joblib import cpu_count
 
     # Only here: they bring the lessons with them.
-    from course_lib.classroom.grading import grade_folder
+    from course_lib.classroom.grading import grade_folder, require_unseen
     from course_lib.classroom.pages import write_results
     from course_lib.classroom.sandbox import Limits
     from course_lib.classroom.submissions import read_roster
@@ -41,24 +45,18 @@ def run(arguments: argparse.Namespace) -> int:
     out = results_folder(arguments.folder, arguments.out)
     options.require_processes("--jobs", arguments.jobs)
     options.require_positive("--seconds", arguments.seconds, "seconds")
-    options.require_positive("--call-seconds", arguments.call_seconds, "seconds")
     options.require_positive("--memory", arguments.memory, "MB")
+    if not arguments.trust:
+        require_unseen(arguments.folder, out)
     seed = kept_seed(out, arguments.seed)
     options.require_seed(seed)
     roster = read_roster(arguments.roster) if arguments.roster else None
-    limits = Limits(arguments.call_seconds, arguments.seconds, arguments.memory)
-    started, bar = time.monotonic(), progress_bar("grading", "file")
+    limits = Limits(arguments.seconds / 3, arguments.seconds, arguments.memory)
+    jobs, started = arguments.jobs or cpu_count(), time.monotonic()
     results = grade_folder(
-        arguments.folder,
-        out,
-        seed,
-        limits,
-        arguments.jobs or cpu_count(),
-        arguments.trust,
-        arguments.scores,
-        roster,
-        bar,
-    )
+        arguments.folder, out, seed, limits, jobs, arguments.trust, arguments.scores, roster, arguments.lessons,
+        progress_bar("grading", "file"),
+    )  # fmt: skip
     names = write_results(results, out)
     print(summary(results, time.monotonic() - started))
     print("\n".join(f"{out / name}" for name in names))
@@ -86,14 +84,12 @@ def kept_seed(out: Path, seed: int | None) -> int:
 
 def summary(results, seconds: float) -> str:
     """Return what the terminal says: how many, what was not read, how long, the walls, and the seed."""
-    statuses = [a.status for one in results.entries if one.counts for a in one.judged.answers]
+    statuses = [a.status for one in results.entries for a in one.judged.answers]
     counts = ", ".join(f"{statuses.count(status)} {status}" for status in sorted(set(statuses))) or "none"
     handed_in = {one.student for one in results.entries}
     lines = [f"{len(handed_in)} students, {len(statuses)} answers: {counts}; {seconds:.0f} s"]
     lines += [f"not read: {one.name}: {one.why}" for one in results.not_read[:20]]
-    if missing := [name for name in results.roster.rows if name not in handed_in]:
+    if missing := results.missing:
         lines.append(f"nothing from {len(missing)} of the class: {', '.join(missing[:20])}")
-    walls = (
-        f"{len(results.walls)} ways through the walls tried, all failed" if results.walls else "WITHOUT WALLS (--trust)"
-    )
-    return "\n".join([*lines, f"{walls}. Seed: {results.seed}"])
+    tried = f"{len(results.walls)} ways through the walls tried, all failed"
+    return "\n".join([*lines, f"{tried if results.walls else 'WITHOUT WALLS (--trust)'}. Seed: {results.seed}"])

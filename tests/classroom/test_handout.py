@@ -77,12 +77,9 @@ def test_the_rubric_has_every_exercise_with_its_points_and_mistakes(made):
     page = (made / "teacher" / "rubric" / "06.md").read_text(encoding="utf-8")
     assert page.startswith("# Rubric · 06 · Likelihood and weights")
     assert "**16 points.**" in page
-    assert re.findall(r"^## (\S+) .* · (\S+), (\d) points$", page, re.M) == [
-        ("06.1", "warm-up", "2"),
-        ("06.2", "core", "4"),
-        ("06.3", "core", "4"),
-        ("06.4", "challenge", "6"),
-    ]
+    assert re.findall(r"^## (\S+ ).* · (.*) points$", page, re.M) == [
+        ("06.1 ", "warm-up, 2"), ("06.2 ", "core, 4"), ("06.3 ", "core, 4"), ("06.4 ", "challenge, 6"),
+    ]  # fmt: skip
     assert f"* {find_exercise('06.1').known[0].hint}\n" in page
     assert page.count("**To talk about.** ") == 4
     project = (made / "teacher" / "rubric" / "P2.md").read_text(encoding="utf-8")
@@ -95,21 +92,10 @@ def test_the_package_for_students_works_and_holds_nothing_of_the_teachers(made, 
         archive.extractall(tmp_path)
     course = tmp_path / "course"
     names = {str(path.relative_to(course)) for path in course.rglob("*")}
-    assert {
-        "course.py",
-        "course_lib/lessons/lesson_06/exercises.py",
-        "notebooks/06_likelihood_and_weights.ipynb",
-    } <= names
-    for gone in (
-        "tests",
-        "tools",
-        ".git",
-        ".ci",
-        "course_lib/classroom",
-        "notebooks/projects/solutions",
-        "TEACHING.md",
-    ):
-        assert gone not in names
+    there = {"course.py", "course_lib/lessons/lesson_06/exercises.py", "notebooks/06_likelihood_and_weights.ipynb"}
+    assert there <= names
+    gone = {"tests", "tools", ".git", ".ci", "course_lib/classroom", "notebooks/projects/solutions", "TEACHING.md"}
+    assert not gone & names
     ran = [subprocess.run([sys.executable, "-m", "course_lib", word], cwd=course, capture_output=True, check=False)
            for word in ("--help", "grade")]  # fmt: skip
     assert [one.returncode for one in ran] == [0, 1]

@@ -72,23 +72,28 @@ def test_composed_and_decomposed_letters_are_one_name(tmp_path):
 @pytest.mark.parametrize("text", ["", "grade\n3\n", "\xff"])
 def test_a_class_list_without_names_is_refused(tmp_path, text):
     (tmp_path / "class.csv").write_text(text, encoding="latin-1")
-    with pytest.raises(SubmissionError, match="--roster"):
+    with pytest.raises(SubmissionError, match=r"CSV file|no column"):
         read_roster(tmp_path / "class.csv")
 
 
 def test_what_is_not_read_is_named_and_links_are_not_followed(tmp_path):
     (tmp_path / "alice").mkdir()
-    for name in ("06.ipynb", "notes.txt", "all.zip", ".hidden.ipynb"):
+    for name in ("06.ipynb", "notes.txt", "all.zip", ".hidden.ipynb", "._06.ipynb", ".DS_Store"):
         (tmp_path / "alice" / name).write_text("{}")
     (tmp_path / "alice" / "07.ipynb").symlink_to("/etc/passwd")
     (tmp_path / "bob").symlink_to("/etc")
+    for name in ("alice/__mine", "alice/__MACOSX", "alice/.git", ".carol"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "06.ipynb").write_text("{}")
     found, not_read = collect(tmp_path, LESSONS)
     assert [one.path.name for one in found] == ["06.ipynb"]
     why = {one.name: one.why for one in not_read}
-    assert set(why) == {"alice/notes.txt", "alice/all.zip", "alice/07.ipynb", "bob"}
-    assert "link" in why["alice/07.ipynb"]
-    assert "link" in why["bob"]
-    assert "unpack" in why["alice/all.zip"]
+    said = {
+        "alice/notes.txt": "neither", "alice/all.zip": "unpack", "alice/07.ipynb": "link", "bob": "link",
+        "alice/.hidden.ipynb": "hidden", "alice/__mine": "hidden", ".carol": "hidden",
+    }  # fmt: skip
+    assert set(why) == set(said)
+    assert all(word in why[name] for name, word in said.items())
     for folder in (tmp_path / "none", tmp_path / "alice" / "06.ipynb"):
         with pytest.raises(SubmissionError, match="not a folder"):
             collect(folder, LESSONS)
@@ -99,4 +104,16 @@ def test_folders_without_end_are_read_to_a_bound(tmp_path):
     deep.mkdir(parents=True)
     (deep / "06.ipynb").write_text("{}")
     (tmp_path / "bob_06.ipynb").write_text("{}")
-    assert [one.student for one in collect(tmp_path, LESSONS)[0]] == ["bob"]
+    found, not_read = collect(tmp_path, LESSONS)
+    assert [one.student for one in found] == ["bob"]
+    assert "folder within 20 others" in not_read[0].why
+
+
+def test_a_student_with_very_many_files_stops_nobody(tmp_path):
+    for student, files in (("alice", 2001), ("bob", 1)):
+        (tmp_path / student).mkdir()
+        for number in range(files):
+            (tmp_path / student / f"{number}.py").touch()
+    found, not_read = collect(tmp_path, LESSONS)
+    assert [sum(one.student == student for one in found) for student in ("alice", "bob")] == [100, 1]
+    assert [(one.name, one.why) for one in not_read] == [("1,901 more files", "only 100 files of a student are graded")]

@@ -138,9 +138,9 @@ def wait_for_a_picture(page, panel, event: str, act: Callable[[], None]) -> floa
     return page.evaluate("() => window.courseWaits")
 
 
-def serious_findings(page) -> list[list[str]]:
-    """What axe-core finds in the outputs, serious or critical: rule, impact, CSS selector, HTML. Nothing is loaded."""
+def serious_findings(page, where: str = OUTPUTS) -> list[list[str]]:
+    """What axe-core finds there, serious or critical: rule, impact, CSS selector, HTML. Nothing is loaded."""
     base = pytest.importorskip("axe_playwright_python.base")
     page.evaluate(base.AXE_SCRIPT)
-    assert page.locator(OUTPUTS).count() > 0
-    return [found for found in page.evaluate(AXE, OUTPUTS) if found[1] in ("serious", "critical")]
+    assert page.locator(where).count() > 0
+    return [found for found in page.evaluate(AXE, where) if found[1] in ("serious", "critical")]

@@ -77,5 +77,6 @@ def test_reading_takes_time_in_proportion_to_the_length(source):
         ran("answer", source(n), "def answer():\n    return last")
         return time.process_time() - start
 
-    # A quadratic rule takes a hundred times as long. (No profiler counts steps here: CPython 3.11.7 can hang under one.)
+    # A quadratic rule takes a hundred times as long.
+    # (A profiler would count steps, but CPython 3.11.7 can hang under one.)
     assert seconds(10_000) < 40 * min(seconds(1000) for _ in range(3))
