@@ -147,7 +147,7 @@ def test_what_takes_too_much_is_stopped_and_earns_nothing(alone, body):
 
 
 def test_memory_of_a_process_whose_main_thread_has_ended_is_seen(alone):
-    body = "import ctypes, threading, time\nhold = lambda: (bytearray(1 << 30), time.sleep(1e6))"
+    body = "import ctypes, threading, time\nhold = lambda: (time.sleep(2), bytearray(1 << 30), time.sleep(1e6))"
     found = alone(f"{body}\nthreading.Thread(target=hold).start()\nctypes.CDLL(None).syscall(60, 0)", Limits())
     assert found.sentence == "Your function takes too much memory."
 
