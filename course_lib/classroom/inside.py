@@ -166,8 +166,7 @@ def answer(
     head = {"number": number, "problems": problems}
     if not callable(found) or is_stub(found):
         kind = "stub" if callable(found) else "missing" if found is None else kind_of(found)
-        send(results, head | {"none": kind})
-        return
+        return send(results, head | {"none": kind})
     banned = forbidden_module(found, forbidden) if forbidden else None
     send(results, head | {"forbidden": banned})
     if banned:

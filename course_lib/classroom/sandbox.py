@@ -91,13 +91,12 @@ def library_copy(folder: Path) -> Iterator[Path]:
 
     def left_out(place: str, names: list[str]) -> set[str]:
         here = Path(place)
-        out = {name for name in names if name in KEPT_BACK and here.name.startswith(("lesson_", "project_"))}
-        out |= {"commands"} if here.name == "course_lib" else set()
-        if here.name == "classroom":
-            out |= set(names) - set(IN_CLASSROOM)
         if here.name == "__pycache__":  # bytecode would hold the solutions; Numba's files are only machine code
-            out |= {name for name in names if not name.endswith((".nbi", ".nbc"))}
-        return out
+            return {name for name in names if not name.endswith((".nbi", ".nbc"))}
+        if here.name == "classroom":
+            return set(names) - set(IN_CLASSROOM)
+        kept_back = KEPT_BACK if here.name.startswith(("lesson_", "project_")) else ()
+        return {"commands"} if here.name == "course_lib" else set(kept_back)
 
     shutil.copytree(REPOSITORY / "course_lib", folder / "course_lib", ignore=left_out)
     compileall.compile_dir(folder / "course_lib", quiet=2)  # once, not in every sandbox
@@ -151,9 +150,8 @@ def walls(limits: Limits, library: Path | None = None, submission: Path | None =
     """Return bubblewrap's command line, to which what runs is added."""
     command = ["bwrap", "--unshare-all", "--unshare-user", "--disable-userns", "--die-with-parent", "--new-session"]
     command += ["--cap-drop", "ALL", "--uid", "65534", "--gid", "65534", "--hostname", "grading"]
-    size = str(limits.folder_mb << 20)
-    command += ["--proc", "/proc", "--dev", "/dev", "--size", size, "--tmpfs", "/tmp", "--size", size]
-    command += ["--tmpfs", "/dev/shm"]
+    bounded = ["--size", str(limits.folder_mb << 20), "--tmpfs"]
+    command += ["--proc", "/proc", "--dev", "/dev", *bounded, "/tmp", *bounded, "/dev/shm"]
     for path in map(Path, SYSTEM):
         linked = path.is_symlink() and path.parent == Path("/")
         command += ["--symlink", os.readlink(path), str(path)] if linked else ["--ro-bind-try", str(path), str(path)]
@@ -166,7 +164,7 @@ def walls(limits: Limits, library: Path | None = None, submission: Path | None =
                 command += ["--ro-bind", str(path), f"/course/data/{path.relative_to(REPOSITORY / 'data')}"]
     if submission is not None:
         command += ["--ro-bind", str(submission), f"/handed_in/submission{submission.suffix.lower()}"]
-    command += ["--ro-bind", "/dev/null", "/dev/zero"]  # zero gives memory without a file; now nobody can open it
+    command += ["--ro-bind", "/dev/null", "/dev/zero"]  # zero would give memory without a file; this cannot be opened
     return [*command, "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", "/tmp"]
 
 
@@ -246,8 +244,7 @@ class Sandbox:
             elif used > self.limits.memory_mb << 20:
                 self._ended = f"takes more than {self.limits.memory_mb} MB ({used >> 20} MB)"
             if self._ended:
-                self._kill()
-                return
+                return self._kill()
             time.sleep(LOOK_EVERY)
 
     def _kill(self) -> None:
