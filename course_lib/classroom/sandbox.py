@@ -233,19 +233,21 @@ class Sandbox:
 
     def _watch(self) -> None:
         """Kill all processes if they last too long, are too many, or take too much memory together."""
-        while not self._closed and self._process.poll() is None:
-            count, used = processes_and_memory(self._process.pid, 2 * self.limits.processes)
-            if time.monotonic() > self._deadline:
-                self._ended = "does not end in time"
-            elif count > 2 * self.limits.processes:  # for root, whose processes the kernel does not limit
-                self._ended = f"starts more than {2 * self.limits.processes} processes"
-            elif (memory := psutil.virtual_memory()).available < MIN_FREE * memory.total:
-                self._ended = "takes more memory than there is"
-            elif used > self.limits.memory_mb << 20:
-                self._ended = f"takes more than {self.limits.memory_mb} MB ({used >> 20} MB)"
-            if self._ended:
-                return self._kill()
-            time.sleep(LOOK_EVERY)
+        most = 2 * self.limits.processes
+        try:
+            while not self._closed and not self._ended and self._process.poll() is None:
+                time.sleep(LOOK_EVERY)
+                count, used = processes_and_memory(self._process.pid, most)
+                if time.monotonic() > self._deadline:
+                    self._ended = "does not end in time"
+                elif count > most:  # for root, whose processes the kernel does not limit
+                    self._ended = f"starts more than {most} processes"
+                elif (memory := psutil.virtual_memory()).available < MIN_FREE * memory.total:
+                    self._ended = "takes more memory than there is"
+                elif used > self.limits.memory_mb << 20:
+                    self._ended = f"takes more than {self.limits.memory_mb} MB ({used >> 20} MB)"
+        finally:  # nothing runs unwatched, even if the watch fails
+            self._kill()
 
     def _kill(self) -> None:
         """Kill the outermost process and its group. Within walls, the kernel then ends all others of the namespace."""
@@ -265,5 +267,5 @@ def processes_and_memory(pid: int, most: int) -> tuple[int, int]:
             total += held.pss + held.swap
             if not held.rss:  # its main thread has ended: what it holds stands only with its other threads
                 sizes = [file.read_text().split()[1] for file in Path(f"/proc/{one.pid}/task").glob("*/statm")]
-                total += max(map(int, sizes)) * mmap.PAGESIZE
+                total += max(map(int, sizes), default=0) * mmap.PAGESIZE
     return len(found), total

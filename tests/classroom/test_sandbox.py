@@ -1,5 +1,6 @@
 """The walls hold: every attempt of the self-test fails within them, and what takes too much is stopped and named."""
 
+import pickle
 import subprocess
 import sys
 import textwrap
@@ -150,6 +151,15 @@ def test_memory_of_a_process_whose_main_thread_has_ended_is_seen(alone):
     body = "import ctypes, threading, time\nhold = lambda: (time.sleep(2), bytearray(1 << 30), time.sleep(1e6))"
     found = alone(f"{body}\nthreading.Thread(target=hold).start()\nctypes.CDLL(None).syscall(60, 0)", Limits())
     assert found.sentence == "Your function takes too much memory."
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_nothing_runs_on_when_the_watch_fails(library, tmp_path, monkeypatch):
+    path = tmp_path / "endless.py"
+    path.write_text("def endless():\n    while True: pass\n", encoding="utf-8")
+    with sandbox.Sandbox(path, library, Limits()) as box:
+        monkeypatch.setattr(sandbox, "processes_and_memory", lambda *given: 1 / 0)
+        assert box.run("06.1", "endless", pickle.dumps([()])).ended.startswith("ends its process")
 
 
 FORGED = {
