@@ -122,7 +122,8 @@ def test_every_line_pins_one_exact_version():
 
 def test_every_range_of_pyproject_is_met_and_the_test_tools_are_there(versions):
     extras = PROJECT["optional-dependencies"]
-    for requirement in map(Requirement, [*PROJECT["dependencies"], *extras["lessons"], *extras["test"]]):
+    ranges = [*PROJECT["dependencies"], *extras["lessons"], *extras["grading"], *extras["test"]]
+    for requirement in map(Requirement, ranges):
         if requirement.name != PROJECT["name"]:  # an extra that names another one
             assert versions[canonicalize_name(requirement.name)] in requirement.specifier, requirement
     assert {"pytest", "pytest-xdist", "nbval", "hypothesis", "ruff"} <= set(versions)

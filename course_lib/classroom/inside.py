@@ -61,16 +61,8 @@ def main(path: str, call_seconds: float, seconds: float) -> None:
         return
     functions = {one.node.name: one.node for one in statements if isinstance(one.node, ast.FunctionDef)}
     shapes = {name: shape for name, node in functions.items() if (shape := digest(node))}
-    send(
-        results,
-        held._asdict()
-        | {
-            "cells": None,
-            "functions": sorted({name for one in statements for name in one.binds}),
-            "shapes": shapes,
-            "problems": problems,
-        },
-    )
+    names = sorted({name for one in statements for name in one.binds})
+    send(results, held._asdict() | {"cells": None, "functions": names, "shapes": shapes, "problems": problems})
     prepare(statements)
     while size := orders.read(8):
         order = pickle.loads(orders.read(struct.unpack("=Q", size)[0]))
@@ -136,19 +128,16 @@ def digest(function: ast.FunctionDef) -> str:
     """Return a digest of a function's syntax tree without names of its own and docstring; "" for a short function."""
     try:
         function = ast.parse(ast.unparse(function)).body[0]  # a copy
-    except RecursionError:
-        return ""
-    if ast.get_docstring(function) is not None:
-        function.body = function.body[1:]
-    nodes = list(ast.walk(function))
-    own = {node.arg for node in nodes if isinstance(node, ast.arg)}
-    own |= {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
-    order: dict[str, str] = {}
-    for node in nodes:
-        for field in ("arg", "id"):
-            if (name := getattr(node, field, None)) in own:
-                setattr(node, field, order.setdefault(name, f"v{len(order)}"))
-    try:
+        if ast.get_docstring(function) is not None:
+            function.body = function.body[1:]
+        nodes = list(ast.walk(function))
+        own = {node.arg for node in nodes if isinstance(node, ast.arg)}
+        own |= {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+        order: dict[str, str] = {}
+        for node in nodes:
+            for field in ("arg", "id"):
+                if (name := getattr(node, field, None)) in own:
+                    setattr(node, field, order.setdefault(name, f"v{len(order)}"))
         return hashlib.sha256(ast.dump(function).encode()).hexdigest()[:16] if len(nodes) >= MIN_NODES else ""
     except RecursionError:
         return ""
@@ -177,8 +166,7 @@ def answer(
     head = {"number": number, "problems": problems}
     if not callable(found) or is_stub(found):
         kind = "stub" if callable(found) else "missing" if found is None else kind_of(found)
-        send(results, head | {"none": kind})
-        return
+        return send(results, head | {"none": kind})
     banned = forbidden_module(found, forbidden) if forbidden else None
     send(results, head | {"forbidden": banned})
     if banned:
@@ -192,10 +180,8 @@ def answer(
             if call.failure.startswith(("does not end", "stops with MemoryError")):
                 return  # the other inputs would cost as much again
         else:
-            send(
-                results,
-                message | {"value": encode(call.value), "changed": "." in number and not same_values(given, kept)},
-            )
+            changed = "." in number and not same_values(given, kept)
+            send(results, message | {"value": encode(call.value), "changed": changed})
 
 
 def run(statements: list[Statement], seconds: float) -> tuple[dict, list[str]]:
@@ -209,7 +195,3 @@ def run(statements: list[Statement], seconds: float) -> tuple[dict, list[str]]:
         if failure is not None:
             problems.append(f"{one.cell}, line {one.node.lineno} {failure}"[:MAX_SENTENCE])
     return names, problems
-
-
-if __name__ == "__main__":
-    main(sys.argv[1], float(sys.argv[2]), float(sys.argv[3]))

@@ -1,16 +1,19 @@
 """The walls around a submission: bubblewrap makes them, prlimit bounds each process, and we watch the sum.
 
 In its own namespaces a submission finds the system, Python and the course read-only, without the modules that hold
-solutions and without the hidden data; a folder of limited size; no network and no other process. `--trust` runs the
-same process without walls.
+solutions and without the hidden data. It has a folder of limited size, no network and no other process. A filter
+refuses system calls that go around the namespaces or the watch. `--trust` runs the same process without walls.
 """
 
 import compileall
 import contextlib
+import errno
+import mmap
 import os
 import pickle
 import platform
 import shutil
+import signal
 import struct
 import subprocess
 import sys
@@ -27,7 +30,6 @@ from course_lib.paths import REPOSITORY
 
 KEPT_BACK = ("exercises.py", "project.py", "rivals.py")
 """Modules of a lesson or project with solutions, hidden seeds or rivals."""
-TEACHERS = ("classroom", "commands")
 IN_CLASSROOM = ("__init__.py", "answers.py", "inside.py")
 """What the process in the sandbox needs of this folder."""
 HIDDEN_DATA = ("rooms_hidden.json",)
@@ -40,6 +42,13 @@ ENVIRONMENT = {
     **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"),
 }  # fmt: skip
 """All that the process finds in its environment."""
+REFUSED = (
+    "shmget", "semget", "msgget", "memfd_create", "memfd_secret", "vmsplice",  # memory that no process is charged for
+    "socket", "socketpair", "io_uring_setup",  # buffers without bound, other machines, open files on their way
+    "add_key", "request_key", "keyctl",  # the session keyring is the teacher's
+    "ptrace", "process_vm_readv", "process_vm_writev", "pidfd_getfd", "userfaultfd", "bpf", "perf_event_open",
+)  # fmt: skip
+"""System calls that no answer needs. Libraries are told that the kernel has none, and take another way."""
 START_SECONDS = 300.0  # until the file is read; only a fault takes so long
 LOOK_EVERY = 0.1  # seconds between two looks at memory
 MAX_LINE = 16 << 20  # bytes of one call's answer; right answers have some kilobytes
@@ -47,9 +56,10 @@ MAX_MESSAGES = 500  # of one answer
 ORDER_SECONDS = 30.0  # of one answer, beside its own time
 MIN_FREE = 0.05  # of the machine's memory: with less, what runs is stopped, whoever took it
 HOW_TO = (
-    "strangers' code is kept in by bubblewrap 0.8 or newer. Install it (Debian, Ubuntu: apt install bubblewrap; "
-    "Fedora: dnf install bubblewrap), or grade in the container of course_lib/classroom/Containerfile. If you have "
-    "read every file and trust it, add --trust"
+    "strangers' code is kept in by bubblewrap 0.8 or newer and libseccomp. Install both (Debian, Ubuntu: apt install "
+    "bubblewrap libseccomp2; Fedora: dnf install bubblewrap libseccomp; the Python package pyseccomp: python3 "
+    "course.py check), or grade in the container of course_lib/classroom/Containerfile. If you have read every file "
+    "and trust it, add --trust"
 )
 
 
@@ -81,13 +91,12 @@ def library_copy(folder: Path) -> Iterator[Path]:
 
     def left_out(place: str, names: list[str]) -> set[str]:
         here = Path(place)
-        out = {name for name in names if name in KEPT_BACK and here.name.startswith(("lesson_", "project_"))}
-        out |= {"commands"} if here.name == "course_lib" else set()
-        if here.name == "classroom":
-            out |= set(names) - set(IN_CLASSROOM)
         if here.name == "__pycache__":  # bytecode would hold the solutions; Numba's files are only machine code
-            out |= {name for name in names if not name.endswith((".nbi", ".nbc"))}
-        return out
+            return {name for name in names if not name.endswith((".nbi", ".nbc"))}
+        if here.name == "classroom":
+            return set(names) - set(IN_CLASSROOM)
+        kept_back = KEPT_BACK if here.name.startswith(("lesson_", "project_")) else ()
+        return {"commands"} if here.name == "course_lib" else set(kept_back)
 
     shutil.copytree(REPOSITORY / "course_lib", folder / "course_lib", ignore=left_out)
     compileall.compile_dir(folder / "course_lib", quiet=2)  # once, not in every sandbox
@@ -96,24 +105,53 @@ def library_copy(folder: Path) -> Iterator[Path]:
 
 
 def require_walls() -> None:
-    """Raise `SandboxError` unless bubblewrap is here and may make its namespaces."""
-    if sys.platform != "linux" or shutil.which("bwrap") is None:
-        raise SandboxError(f"{platform.system()} has no bwrap here: {HOW_TO}")
-    command = [*walls(Limits()), *bounds(Limits()), "sh", "-c", "true & wait"]
-    tried = subprocess.run(command, capture_output=True, text=True, check=False)
+    """Raise `SandboxError` unless bubblewrap and the filter are here, and bubblewrap may make its namespaces."""
+    try:
+        with start(["sh", "-c", "true & wait"], Limits(), stderr=subprocess.PIPE, text=True) as tried:
+            said = tried.stderr.read()
+    except (ImportError, RuntimeError, OSError) as error:  # pyseccomp finds no libseccomp, or there is no bwrap
+        raise SandboxError(f"{platform.system()} has no walls here ({error}): {HOW_TO}") from None
     if tried.returncode:
-        raise SandboxError(f"bubblewrap does not start ({one_line(tried.stderr, 200)}): {HOW_TO}")
+        raise SandboxError(f"bubblewrap does not start ({one_line(said, 200)}): {HOW_TO}")
+
+
+def start(
+    command: list[str], limits: Limits, library: Path | None = None, submission: Path | None = None, **given: object
+) -> subprocess.Popen:
+    """Start a command within the walls. given: what else `Popen` is told."""
+    program = filter_program()
+    bound = ["--seccomp", str(program), "prlimit", f"--fsize={limits.folder_mb << 20}", "--nofile=256", "--core=0"]
+    bound += [f"--as={4 * limits.memory_mb << 20}", f"--nproc={limits.processes}"]
+    try:
+        within = [*walls(limits, library, submission), *bound, *command]
+        return subprocess.Popen(within, env=ENVIRONMENT, pass_fds=[program], **given)
+    finally:
+        os.close(program)
+
+
+def filter_program() -> int:
+    """Return an open file from which bubblewrap reads the filter. A process that calls as a 32-bit program is ended."""
+    import pyseccomp  # only here, because --trust works without it
+
+    program, refuse = pyseccomp.SyscallFilter(pyseccomp.ALLOW), pyseccomp.ERRNO(errno.ENOSYS)
+    program.set_attr(pyseccomp.Attr.ACT_BADARCH, pyseccomp.KILL_PROCESS)
+    for name in REFUSED:
+        program.add_rule(refuse, name)
+    # A child can fill shared memory that has no file, and end. Then no process is charged for it.
+    shared = mmap.MAP_SHARED | mmap.MAP_ANONYMOUS
+    program.add_rule(refuse, "mmap", pyseccomp.Arg(3, pyseccomp.MASKED_EQ, shared, shared))
+    read, write = os.pipe()  # takes 64 kB at once; the program has less than one
+    with open(write, "wb") as file:
+        program.export_bpf(file)
+    return read
 
 
 def walls(limits: Limits, library: Path | None = None, submission: Path | None = None) -> list[str]:
-    """Return the command that runs another one within walls."""
+    """Return bubblewrap's command line, to which what runs is added."""
     command = ["bwrap", "--unshare-all", "--unshare-user", "--disable-userns", "--die-with-parent", "--new-session"]
-    command += ["--cap-drop", "ALL", "--uid", "65534", "--gid", "65534", "--hostname", "grading", "--clearenv"]
-    for name, value in ENVIRONMENT.items():
-        command += ["--setenv", name, value]
-    size = str(limits.folder_mb << 20)
-    command += ["--proc", "/proc", "--dev", "/dev", "--size", size, "--tmpfs", "/tmp", "--size", size]
-    command += ["--tmpfs", "/dev/shm"]
+    command += ["--cap-drop", "ALL", "--uid", "65534", "--gid", "65534", "--hostname", "grading"]
+    bounded = ["--size", str(limits.folder_mb << 20), "--tmpfs"]
+    command += ["--proc", "/proc", "--dev", "/dev", *bounded, "/tmp", *bounded, "/dev/shm"]
     for path in map(Path, SYSTEM):
         linked = path.is_symlink() and path.parent == Path("/")
         command += ["--symlink", os.readlink(path), str(path)] if linked else ["--ro-bind-try", str(path), str(path)]
@@ -126,13 +164,8 @@ def walls(limits: Limits, library: Path | None = None, submission: Path | None =
                 command += ["--ro-bind", str(path), f"/course/data/{path.relative_to(REPOSITORY / 'data')}"]
     if submission is not None:
         command += ["--ro-bind", str(submission), f"/handed_in/submission{submission.suffix.lower()}"]
+    command += ["--ro-bind", "/dev/null", "/dev/zero"]  # zero would give memory without a file; this cannot be opened
     return [*command, "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", "/tmp"]
-
-
-def bounds(limits: Limits) -> list[str]:
-    """Return the command that bounds each process of another one."""
-    file, space = limits.folder_mb << 20, 4 * limits.memory_mb << 20
-    return ["prlimit", f"--fsize={file}", f"--as={space}", f"--nproc={limits.processes}", "--nofile=256", "--core=0"]
 
 
 class Sandbox:
@@ -142,15 +175,15 @@ class Sandbox:
         self.limits, self._ended, self._closed = limits, "", False
         path = submission.resolve() if trust else Path(f"/handed_in/submission{submission.suffix.lower()}")
         place = library if trust else Path("/course")
-        start = f"import sys; sys.path.insert(0, {str(place)!r}); from course_lib.classroom.inside import main; "
-        start += f"main({str(path)!r}, {limits.call_seconds!r}, {limits.seconds!r})"
-        python = [sys.executable, "-P", "-s", "-B", "-c", start]
-        around = [] if trust else [*walls(limits, library, submission.resolve()), *bounds(limits)]
-        environment = ENVIRONMENT if not trust else os.environ | ENVIRONMENT | {"HOME": str(library)}
-        self._process = subprocess.Popen(
-            [*around, *python], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment,
-            cwd=library, start_new_session=True,
-        )  # fmt: skip
+        code = f"import sys; sys.path.insert(0, {str(place)!r}); from course_lib.classroom.inside import main; "
+        code += f"main({str(path)!r}, {limits.call_seconds!r}, {limits.seconds!r})"
+        python = [sys.executable, "-P", "-s", "-B", "-c", code]
+        pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE) | {"start_new_session": True}
+        if trust:
+            environment = os.environ | ENVIRONMENT | {"HOME": str(library)}
+            self._process = subprocess.Popen(python, cwd=library, env=environment, **pipes)
+        else:
+            self._process = start(python, limits, library, submission.resolve(), **pipes)
         self._deadline = time.monotonic() + START_SECONDS
         self._watcher = threading.Thread(target=self._watch, daemon=True)
         self._watcher.start()
@@ -200,45 +233,39 @@ class Sandbox:
 
     def _watch(self) -> None:
         """Kill all processes if they last too long, are too many, or take too much memory together."""
-        while not self._closed and self._process.poll() is None:
-            count, used = processes_and_memory(self._process.pid, 2 * self.limits.processes)
-            if time.monotonic() > self._deadline:
-                self._ended = "does not end in time"
-            elif count > 2 * self.limits.processes:  # for root, whose processes the kernel does not limit
-                self._ended = f"starts more than {2 * self.limits.processes} processes"
-            elif (memory := psutil.virtual_memory()).available < MIN_FREE * memory.total:
-                self._ended = "takes more memory than there is"
-            elif used > self.limits.memory_mb << 20:
-                self._ended = f"takes more than {self.limits.memory_mb} MB ({used >> 20} MB)"
-            if self._ended:
-                self._kill()
-                return
-            time.sleep(LOOK_EVERY)
+        most = 2 * self.limits.processes
+        try:
+            while not self._closed and not self._ended and self._process.poll() is None:
+                time.sleep(LOOK_EVERY)
+                count, used = processes_and_memory(self._process.pid, most)
+                if time.monotonic() > self._deadline:
+                    self._ended = "does not end in time"
+                elif count > most:  # for root, whose processes the kernel does not limit
+                    self._ended = f"starts more than {most} processes"
+                elif (memory := psutil.virtual_memory()).available < MIN_FREE * memory.total:
+                    self._ended = "takes more memory than there is"
+                elif used > self.limits.memory_mb << 20:
+                    self._ended = f"takes more than {self.limits.memory_mb} MB ({used >> 20} MB)"
+        finally:  # nothing runs unwatched, even if the watch fails
+            self._kill()
 
     def _kill(self) -> None:
-        """Kill the outermost process; the kernel ends all others of its namespace, and without walls we do."""
-        others = []
-        with contextlib.suppress(psutil.Error):
-            others = psutil.Process(self._process.pid).children(recursive=True)
-        self._process.kill()
-        for one in others:
-            with contextlib.suppress(psutil.Error):
-                one.kill()
+        """Kill the outermost process and its group. Within walls, the kernel then ends all others of the namespace."""
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(self._process.pid, signal.SIGKILL)
         self._process.wait()
 
 
 def processes_and_memory(pid: int, most: int) -> tuple[int, int]:
-    """Return how many processes there are below one, and the bytes that they hold in memory and in files of memory.
-
-    Of more than `most` processes the memory is not asked for.
-    """
+    """Return how many processes there are below one, and the bytes that the first `most` of them hold together."""
     total, found = 0, []
     with contextlib.suppress(psutil.Error):
         found = psutil.Process(pid).children(recursive=True)
-    for one in found if len(found) <= most else ():
+    for one in found[:most]:
         with contextlib.suppress(psutil.Error, OSError):
-            total += one.memory_full_info().pss
-            for file in os.scandir(f"/proc/{one.pid}/fd"):
-                if os.readlink(file.path).startswith(("/memfd:", "/tmp/", "/dev/shm")):
-                    total += os.stat(file.path).st_blocks * 512
+            held = one.memory_full_info()
+            total += held.pss + held.swap
+            if not held.rss:  # its main thread has ended: what it holds stands only with its other threads
+                sizes = [file.read_text().split()[1] for file in Path(f"/proc/{one.pid}/task").glob("*/statm")]
+                total += max(map(int, sizes), default=0) * mmap.PAGESIZE
     return len(found), total

@@ -1,7 +1,6 @@
 """Try, before every grading, what a hostile answer would try. Each attempt runs in the sandbox and must fail."""
 
 import contextlib
-import ctypes
 import json
 import os
 import platform
@@ -13,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from string import Template
 
-from course_lib.classroom.sandbox import ENVIRONMENT, Limits, SandboxError, bounds, walls
+from course_lib.classroom.sandbox import ENVIRONMENT, Limits, SandboxError, start
 from course_lib.files import temporary_folder
 
 ATTEMPTS: dict[str, str] = tomllib.loads(Path(__file__).with_name("attempts.toml").read_text(encoding="utf-8"))
@@ -72,25 +71,23 @@ def attempts(library: Path, limits: Limits) -> dict[str, str]:
         )
         submission = Path(there["folder"]) / "submission.py"
         submission.write_text("", encoding="utf-8")
-        start = f"import sys; sys.path.insert(0, '/course'); exec({program!r})"
-        command = [*walls(limits, library, submission), *bounds(limits), sys.executable, "-P", "-s", "-B", "-c", start]
-        try:
-            ran = subprocess.run(
-                command, capture_output=True, text=True, check=False, timeout=120, stdin=subprocess.DEVNULL
-            )
-        except subprocess.TimeoutExpired:
-            raise SandboxError("the walls' test does not end on this machine") from None
-    found = dict(json.loads(line) for line in ran.stdout.splitlines())
+        python = [sys.executable, "-P", "-s", "-B", "-c", program]
+        pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+        with start(python, limits, library, submission, **pipes) as process:
+            try:
+                out, said = process.communicate(timeout=120)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                raise SandboxError("the walls' test does not end on this machine") from None
+    found = dict(json.loads(line) for line in out.splitlines())
     if list(found) != list(ATTEMPTS):
-        raise SandboxError(f"the walls' test did not run to its end: {ran.stderr.strip()[-300:]}")
+        raise SandboxError(f"the walls' test did not run to its end: {said.strip()[-300:]}")
     return found
 
 
 @contextlib.contextmanager
 def _outside() -> Iterator[dict]:
     """Put outside what an attempt looks for, and yield its names."""
-    libc, key = ctypes.CDLL(None), 0x5EC0DE ^ os.getpid()
-    queue, segment, semaphore = libc.msgget(key, 0o1600), libc.shmget(key, 1, 0o1600), libc.semget(key, 1, 0o1600)
     with contextlib.ExitStack() as stack:
         folder = stack.enter_context(temporary_folder())
         (folder / "secret").write_text("secret", encoding="utf-8")
@@ -98,15 +95,8 @@ def _outside() -> Iterator[dict]:
         process = stack.enter_context(subprocess.Popen(asleep))
         stack.callback(process.kill)
         listening = stack.enter_context(socket.create_server(("127.0.0.1", 0)))
-        for name in (f"{folder}/socket", f"\0course-{os.getpid()}"):
+        abstract = f"course-{os.getpid()}"
+        for name in (f"{folder}/socket", f"\0{abstract}"):
             stack.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)).bind(name)
-        try:
-            yield {
-                "secret": folder / "secret", "port": listening.getsockname()[1], "folder": folder,
-                "pid": process.pid, "key": key,
-                "abstract": f"course-{os.getpid()}",
-            }  # fmt: skip
-        finally:
-            libc.msgctl(queue, 0, None)
-            libc.shmctl(segment, 0, None)
-            libc.semctl(semaphore, 0, 0)
+        found = {"secret": folder / "secret", "folder": folder, "abstract": abstract}
+        yield found | {"port": listening.getsockname()[1], "pid": process.pid}
