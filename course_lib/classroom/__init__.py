@@ -18,5 +18,6 @@ self_test          what a hostile answer would try (`attempts.toml`), tried befo
 judge              one submission judged: answers compared, points, sentences
 worlds             the worlds on which a project's function is judged: other seeds, other rooms
 grading            all submissions of a folder, each in a process of its own
+results            what counts, points, and what a teacher wants to see of the class
 pages              the results as pages and tables (`templates/`)
 """

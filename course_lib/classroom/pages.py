@@ -5,8 +5,8 @@ import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from course_lib.classroom.grading import Results, table_text
 from course_lib.classroom.points import BY_HAND
+from course_lib.classroom.results import Results, table_text
 from course_lib.classroom.templates import template
 from course_lib.files import atomic_write
 from course_lib.lessons.kit.projects import project_names

@@ -10,10 +10,11 @@ from pathlib import Path
 import pytest
 
 from course_lib.classroom import grading
-from course_lib.classroom.grading import Entry, grade_folder, what_counts
+from course_lib.classroom.grading import grade_folder
 from course_lib.classroom.handout import canary_of
 from course_lib.classroom.judge import Graded, Judged
 from course_lib.classroom.pages import feedback_name, write_results
+from course_lib.classroom.results import Entry, what_counts
 from course_lib.classroom.sandbox import Limits, SandboxError
 from course_lib.classroom.submissions import Submission, read_roster
 from course_lib.cli import main
