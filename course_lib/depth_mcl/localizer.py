@@ -16,6 +16,7 @@ import numpy as np
 
 from course_lib.depth_mcl.likelihood import ALPHA, BETA, Weighting, checked_image, paper_weighting, valid_pixels
 from course_lib.depth_mcl.motion import BODY_AXES, Motion, checked_sigma
+from course_lib.depth_mcl.one_at_a_time import one_at_a_time
 from course_lib.depth_mcl.particle_filter import Scheme, effective_sample_size, initial_particles, resample
 from course_lib.depth_mcl.uncertainty import carried_covariance, error_covariance, positive_part
 from course_lib.rendering.renderer import DepthRenderer
@@ -27,6 +28,8 @@ from course_lib.rendering.scene_map import SceneMap
 SIGMA_XY_YAW = (0.15, 0.04, 0.0, 0.0, 0.0, np.deg2rad(1.5))
 
 MAP_MARGIN = 1.0  # metres outside the map's bounding box where a start is still taken for a camera that looks at it
+
+MAX_ANGLES = (np.pi, np.pi, 2 * np.pi)  # radians, roll, pitch and yaw of a start, beyond which they look like degrees
 
 Status = Literal["ok", "no measurement"]
 
@@ -99,6 +102,7 @@ class MonteCarloLocalizer:
         self.particles: np.ndarray | None = None
         self._centre_covariance = np.zeros((6, 6))  # of the error of the particles' centre, beyond their own spread
 
+    @one_at_a_time
     def initialize(self, state0: np.ndarray) -> None:
         """Put every particle at the initial state `(6,)`, eqs (3), (4).
 
@@ -108,12 +112,15 @@ class MonteCarloLocalizer:
         self.particles = particles
         self._centre_covariance = np.zeros((6, 6))
 
+    @one_at_a_time
     def step(self, depth: np.ndarray) -> Estimate:
         """One round of the paper's figure 1 for a depth image `(H, W)` in metres, NaN = no measurement.
 
+        The image holds depth along the optical axis, not the length of each ray: one image cannot show which it is.
         A frame without any measurement moves the particles (A-1) but can neither weigh nor resample them, so the cloud
         grows. It warns (`NoMeasurementWarning`), and the estimate's status says so. The arrays of the estimate are the
-        caller's own. Raises `DepthImageError` for an image of another size, `RuntimeError` before `initialize`.
+        caller's own. Raises `DepthImageError` for an image of another size or in another unit (`checked_image`),
+        `RuntimeError` before `initialize` and while another thread is in this filter.
         """
         if self.particles is None:
             raise RuntimeError("call initialize(state0) before the first step: the paper's filter is given its start")
@@ -134,7 +141,7 @@ class MonteCarloLocalizer:
         warnings.warn(
             "this frame holds no measurement between the camera's near and far planes; particles were moved only",
             NoMeasurementWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
         self.particles = particles.copy()
         w, scores = np.full(self.n_particles, 1.0 / self.n_particles), np.full(self.n_particles, np.nan)
@@ -152,8 +159,17 @@ class MonteCarloLocalizer:
 
 
 def checked_start(state0: np.ndarray, scene_map: SceneMap) -> np.ndarray:
-    """Return the start `(6,)` of a filter. Raises `ValueError` if it is not finite or lies outside the map."""
+    """Return the start `(6,)` of a filter.
+
+    Raises `ValueError` if it is not finite, lies outside the map, or has angles that look like degrees: a roll or pitch
+    beyond pi, a yaw beyond 2 pi.
+    """
     start = initial_particles(state0, 1)[0]
+    if (np.abs(start[3:]) > MAX_ANGLES).any():
+        raise ValueError(
+            f"roll, pitch and yaw of the start must be radians, at most pi, pi and 2 pi; got {start[3:].tolist()}. "
+            "These look like degrees: give np.deg2rad of them"
+        )
     if not scene_map.contains(start[:3], MAP_MARGIN):
         raise ValueError(
             f"the initial position {start[:3].round(3).tolist()} lies outside the map, which reaches from "

@@ -183,9 +183,23 @@ def test_what_cannot_be_a_setting_a_start_or_a_frame_is_named(renderer):
     for state in ([20.0, 0, 0, 0, 0, 0], [np.nan] * 6, np.zeros(5)):
         with pytest.raises(ValueError, match=r"outside the map|state0"):
             localizer.initialize(state)
+    for angles in ((0, 0, 90), (4, 0, 0), (0, -5, 0)):
+        with pytest.raises(ValueError, match=r"look like degrees: give np\.deg2rad"):
+            localizer.initialize([0, 0, 0, *angles])
+    localizer.initialize([0, 0, 0, np.pi, -np.pi, 2 * np.pi])
     localizer.initialize(START)
-    with pytest.raises(DepthImageError, match=r"\(48, 64\)"):
-        localizer.step(np.ones((64, 48)))
+    before = localizer.particles.copy()
+    depth = room_depth(SMALL, START)[0]
+    millimetres = 1000 * depth
+    for image, said in (
+        (np.ones((64, 48)), r"\(48, 64\)"),
+        (millimetres.astype(np.uint16), "holds uint16; metres as float .* divide them by 1000"),
+        (millimetres, "millimetres: divide them by 1000"),
+        (np.where(depth > 2.9, millimetres, np.nan), "millimetres"),
+    ):
+        with pytest.raises(DepthImageError, match=said):
+            localizer.step(image)
+    assert np.array_equal(localizer.particles, before)
 
 
 def test_the_nearest_path_error_hides_error_along_the_path_and_the_timed_error_does_not():
