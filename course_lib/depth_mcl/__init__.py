@@ -19,7 +19,7 @@ State vectors and particle sets, eqs (1) and (2), are in `course_lib.geometry`. 
 # ruff: noqa: F401 - the public names
 from course_lib.depth_mcl.evaluation import nearest_path_error, timed_error
 from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, weights
-from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning
+from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning, SlowFilterWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES, Motion, propagate
 from course_lib.depth_mcl.particle_filter import effective_sample_size, initial_particles, resample, weighted_mean_state
 from course_lib.depth_mcl.sequence import read_sequence
@@ -27,4 +27,4 @@ from course_lib.depth_mcl.sequence_files import SequenceError
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
 from course_lib.rendering.scene_map import SceneMap, SceneMapError
-from course_lib.rendering.sensor import depth_image_from_points
+from course_lib.rendering.sensor import depth_image_from_points, subsample_depth

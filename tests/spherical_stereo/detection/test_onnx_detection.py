@@ -53,6 +53,20 @@ def test_outputs_of_another_layout_are_refused_with_their_shapes(layout):
         decode_onnx([np.zeros((1, 9, 8))], layout, 2, (100, 80))
 
 
+@pytest.mark.parametrize(
+    "outputs",
+    [
+        [SHARES, CONFIDENCES, CONFIDENCES],
+        [CONFIDENCES, CONFIDENCES],
+        [SHARES, SHARES],
+        [SHARES, np.repeat(CONFIDENCES, 2, axis=1)],
+    ],
+)
+def test_yolov4_needs_two_outputs_boxes_and_as_many_scores(outputs):
+    with pytest.raises(DetectorError, match=r"layout yolov4 needs outputs \(1, n, 1, 4\) and \(1, n, 2\)"):
+        decode_onnx(outputs, "yolov4", 2, (100, 80))
+
+
 def refused(path, names, says, layout="yolov8", input_size=INPUT_SIZE):
     with pytest.raises(DetectorError, match=says):
         YoloDetector.from_onnx(path, names, layout=layout, input_size=input_size)
