@@ -142,7 +142,7 @@ def test_a_start_with_a_covariance_is_drawn_from_it(renderer, motion):
     root = np.zeros((6, 6))
     root[np.ix_([0, 1, 5], [0, 1, 5])] = [[0.3, 0, 0], [0.1, 0.2, 0], [0.02, -0.05, 0.1]]
     localizer = MonteCarloLocalizer(renderer, 20_000, SIGMA, motion=motion)
-    start = START + [0, 0, 0, 0, 0, np.pi]
+    start = START + np.array([0, 0, 0, 0, 0, np.pi])
     localizer.initialize(start, root @ root.T)
     deviations = motion.deviations(localizer.particles, start)
     assert np.cov(deviations.T) == pytest.approx(root @ root.T, abs=0.002)
