@@ -12,7 +12,7 @@ from course_lib.beyond import AnnealedLocalizer, GlobalSearch, GuardedLocalizer,
 from course_lib.depth_mcl import MonteCarloLocalizer
 from course_lib.depth_mcl.one_at_a_time import one_at_a_time
 from course_lib.spherical_stereo import SemanticLocalizer, StereoRig
-from tests.spherical_stereo.stereo_scene import BASELINE, mapped_scene
+from tests.spherical_stereo.stereo_scene import BASELINE, KnowingDetector, mapped_scene
 
 START = np.array([-1.0, 0.3, -0.3, 0.0, 0.0, -0.4])
 SIGMA = [0.05, 0.05, 0, 0, 0, 0.03]
@@ -45,7 +45,7 @@ CALLS = {
     "GlobalSearch": lambda renderer: lambda z: GlobalSearch.step(search_of(renderer), z, DOWN),
     "GuardedRig": lambda _: lambda z: GuardedRig.localize(RIG, z, np.zeros((32, 64, 3), np.uint8)),
 }
-RIG = GuardedRig(SemanticLocalizer(StereoRig(BASELINE), mapped_scene()[2], detector=object))
+RIG = GuardedRig(SemanticLocalizer(StereoRig(BASELINE), mapped_scene()[2], KnowingDetector()))
 SEARCH = []
 
 

@@ -54,17 +54,20 @@ def test_outputs_of_another_layout_are_refused_with_their_shapes(layout):
 
 
 @pytest.mark.parametrize(
-    "outputs",
+    ("layout", "outputs"),
     [
-        [SHARES, CONFIDENCES, CONFIDENCES],
-        [CONFIDENCES, CONFIDENCES],
-        [SHARES, SHARES],
-        [SHARES, np.repeat(CONFIDENCES, 2, axis=1)],
+        ("yolov4", [SHARES, CONFIDENCES, CONFIDENCES]),
+        ("yolov4", [CONFIDENCES, CONFIDENCES]),
+        ("yolov4", [SHARES, SHARES]),
+        ("yolov4", [SHARES, np.repeat(CONFIDENCES, 2, axis=1)]),
+        ("yolov8", [np.ones((1, 6, 3))] * 2),
+        ("yolov8", [np.ones((2, 6, 3))]),
+        ("yolov8", [np.ones((1, 6))]),
     ],
 )
-def test_yolov4_needs_two_outputs_boxes_and_as_many_scores(outputs):
-    with pytest.raises(DetectorError, match=r"layout yolov4 needs outputs \(1, n, 1, 4\) and \(1, n, 2\)"):
-        decode_onnx(outputs, "yolov4", 2, (100, 80))
+def test_a_layout_needs_its_own_number_of_outputs_and_of_their_rows(layout, outputs):
+    with pytest.raises(DetectorError, match=rf"layout {layout} .*the file gives"):
+        decode_onnx(outputs, layout, 2, (100, 80))
 
 
 def refused(path, names, says, layout="yolov8", input_size=INPUT_SIZE):
