@@ -140,16 +140,19 @@ def test_the_readme_is_a_front_page_whose_numbers_links_and_commands_are_right()
         assert target.startswith("http") or (ROOT / target).exists(), target
 
 
-def test_the_snippets_of_the_readme_follow_the_wagon_and_find_the_rig(monkeypatch):
-    monkeypatch.chdir(ROOT)
-    wagon, rig = {}, {}
-    exec(SNIPPETS[0].replace("n_particles=200", "n_particles=20"), wagon)
-    true = wagon["run"].camera_to_world[0][:3, 3]
-    assert np.linalg.norm(wagon["estimate"].state[:3] - true) < 0.5
-    exec(SNIPPETS[1], rig)
-    found, true = rig["found"], rig["room"].pairs[0].pose
-    assert found.status == "ok"
-    assert np.hypot(found.pose.x - true[0], found.pose.y - true[1]) < 0.5
+def test_the_snippets_of_the_readme_need_no_file_follow_an_own_mesh_and_ask_an_own_detector(monkeypatch, tmp_path, rng):
+    monkeypatch.chdir(tmp_path)
+    depth, stereo = {}, {}
+    exec(SNIPPETS[0], depth)
+    assert depth["estimate"].status == "tracked"
+    assert depth["estimate"].state == pytest.approx([-1.9, 0.5, 0.2, 0.0, 0.05, -0.1], abs=0.01)
+    exec(SNIPPETS[1], stereo)
+    panoramas = rng.integers(0, 255, (2, 128, 256, 3), dtype=np.uint8)
+    found = stereo["locate"](*panoramas)
+    assert [one.label for one in found.upper.detections] == ["sofa", "chair"]
+    assert found.upper.detections[0].saturation > 0
+    assert found.status == "unable"
+    assert found.reason
 
 
 @pytest.mark.parametrize(

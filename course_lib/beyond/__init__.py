@@ -5,10 +5,12 @@ lost_and_found/  a start that is not known, and finding the camera again after i
 being_lost       whether the filter still holds the track: "tracked", "doubtful" or "lost"
 look_alikes/     rooms whose objects look alike: poses of two matches, what speaks for each, how sure
 several_views    several views over time
+compiling        what the first step would wait for, done before
 guarded_*        sensor trouble: whether a frame can be used, and the outcome of each
 """
 
 # ruff: noqa: F401 - the public names
+from course_lib.beyond.compiling import warm_up
 from course_lib.beyond.guarded_depth import GuardedFrame, GuardedLocalizer
 from course_lib.beyond.guarded_stereo import GuardedPair, GuardedRig
 from course_lib.beyond.look_alikes.consistent import associate_consistent, rank_poses

@@ -20,6 +20,7 @@ from course_lib.beyond.guarded_frames import Fault, FrameCheck
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.depth_mcl.likelihood import checked_image
 from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning
+from course_lib.depth_mcl.one_at_a_time import one_at_a_time
 
 Outcome = TrackStatus | Fault | Literal["no image"]
 # A frame was used (the first three), it never came, or it was not used.
@@ -46,6 +47,7 @@ class GuardedLocalizer:
         self._period = period
         self._begin()
 
+    @one_at_a_time
     def initialize(self, state0: np.ndarray) -> None:
         """Say where the camera is before the first frame, as the filter's own `initialize` does."""
         self.localizer.initialize(state0)
@@ -57,6 +59,7 @@ class GuardedLocalizer:
         self._last: Estimate | AnnealedEstimate | None = None
         self._debt = Debt()
 
+    @one_at_a_time
     def step(self, depth: np.ndarray, time: float | None = None) -> GuardedFrame:
         """Return what becomes of a depth image `(H, W)` in metres (NaN = no measurement), taken at `time` (seconds)."""
         depth = checked_image(depth, self._camera)

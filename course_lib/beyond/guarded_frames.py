@@ -16,6 +16,7 @@ Fault = Literal[
 ]
 
 CLOCK_WAS_SET = 3  # frames in a row, behind the latest but ascending, after which the clock was set back (chosen)
+MAX_PERIODS = 1e5  # between two frames: microseconds for seconds give a million, nanoseconds a billion (chosen)
 MAX_MISSED = 50  # frames that a gap counts as, at most: after a longer one no motion model knows anything (chosen)
 
 # Limits; in brackets the worst of 1,983 undisturbed frames: data/corridor, corridor seeds 10,001 to 10,003 (also with
@@ -53,7 +54,8 @@ class FrameOrder:
         """Return a frame's status; called once for each frame that arrives.
 
         images: of all cameras of the sensor. "repeated": all of them are those of the last frame, value for value.
-        time: seconds, on any clock; None if unknown.
+        time: seconds, on any clock; None if unknown. Raises `ValueError` for a time that is not finite, or more than
+        `MAX_PERIODS` after the last one.
         """
         if time is not None and not np.isfinite(time):
             raise ValueError(f"a frame's time must be a finite number of seconds, or None; got {time!r}")
@@ -62,6 +64,11 @@ class FrameOrder:
             if self._latest is not None and time <= self._latest and not self._clock_was_set(time):
                 return FrameStatus("out of order", 0)
             if self.period is not None and self._latest is not None:
+                if time - self._latest > MAX_PERIODS * self.period:
+                    raise ValueError(
+                        f"a frame came at {time:g}, {(time - self._latest) / self.period:.1g} periods after the last "
+                        "one. Seconds are expected: divide nanoseconds by 1e9, or begin anew after so long a pause"
+                    )
                 missed = int(np.clip(round((time - self._latest) / self.period) - 1, 0, MAX_MISSED))
             self._latest, self._behind = time, []
         images = tuple(np.array(image) for image in images)  # a copy, because a driver may fill the same memory again

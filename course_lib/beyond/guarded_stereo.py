@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.beyond.guarded_frames import FrameOrder
+from course_lib.depth_mcl.one_at_a_time import one_at_a_time
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.matching.features import SwappedImagesError
 from course_lib.spherical_stereo.pose.localization import OK, SWAPPED, Localization
@@ -27,6 +28,7 @@ class GuardedRig:
         self.localizer = localizer
         self._order = FrameOrder(period)
 
+    @one_at_a_time
     def localize(self, upper_image: np.ndarray, lower_image: np.ndarray, time: float | None = None) -> GuardedPair:
         """Return the outcome of two panoramas, taken at `time` (seconds; None: unknown), also of exchanged ones."""
         frame = self._order.look((np.asarray(upper_image), np.asarray(lower_image)), time)

@@ -21,6 +21,7 @@ from course_lib.beyond.look_alikes.confidence import (
 from course_lib.beyond.look_alikes.consistent import SHORT_LIST, distinct, explain, rank_poses
 from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis, rotations, scene_of
+from course_lib.depth_mcl.one_at_a_time import one_at_a_time
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.pose.localization import OK, UNABLE, Status
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
@@ -120,6 +121,7 @@ class SemanticTracker:
         self.semantic_map, self.evidence, self.min_confidence = semantic_map, evidence, min_confidence
         self.belief = Belief()
 
+    @one_at_a_time
     def step(self, observations: Sequence[Observation], motion: Motion | None = None) -> Track:
         """Return the answer with one more view. motion: since the view before; None without odometry."""
         motion = UNKNOWN_MOTION if motion is None else motion

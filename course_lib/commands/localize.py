@@ -24,6 +24,7 @@ EPILOG = """\
 the folder of the recording:
   depth/*.png      16-bit depth along the optical axis, 0 = no measurement; the first number in the name is the frame
   intrinsics.txt   3 x 3 matrix K in pixels, for images of this size
+  (the paper's filter takes 0.8 s a frame at 640 x 480: for it, make the images smaller, and intrinsics.txt with them)
   poses.txt        optional, the truth: frame, row-major 4 x 4 camera-to-world matrix (x right, y down, z forward)
   up.txt           optional: which axis of map and poses points up (x, -x, y, -y, z, -z)
 

@@ -21,7 +21,7 @@ the boxes file, in pixels (left, top, right, bottom) of images of that size; "na
 
 
 # The two ways of measuring an object's distance, and what each says.
-WAYS, MEASURED = ("box_centre", "disparity"), ("outcome", "distance_m", "horizontal_range_m", "horizontal_sigma_m")
+WAYS, MEASURED = ("box_centre", "disparity"), ("outcome", "horizontal_range_m", "horizontal_sigma_m")
 
 
 def add_pair_arguments(parser: argparse.ArgumentParser) -> None:
@@ -92,6 +92,12 @@ def _median(values: np.ndarray) -> float:
     return float(np.median(values)) if len(values) else float("nan")
 
 
+def _distance(found) -> dict:
+    """Return a distance as the table has it; distance_m is that along the upper camera's direction."""
+    values = {name: getattr(found, name) for name in MEASURED}
+    return {**values, "distance_m": float(np.linalg.norm(found.position))}
+
+
 def _row(measured, boxes) -> dict:
     upper, lower = boxes.upper[measured.upper], boxes.lower[measured.lower]
     names = [name for name in (upper.name, lower.name) if name]
@@ -102,7 +108,7 @@ def _row(measured, boxes) -> dict:
         "lower": measured.lower,
         "matches": measured.n_matches,
         "azimuth_deg": measured.azimuth_deg,
-        **{way: {name: getattr(getattr(measured, way), name) for name in MEASURED} for way in WAYS},
+        **{way: _distance(getattr(measured, way)) for way in WAYS},
     }
 
 

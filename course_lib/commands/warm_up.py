@@ -4,22 +4,6 @@ Compiled loops are kept beside their source (compiled.py), the simplified map in
 """
 
 
-def compile_loops() -> None:
-    """Renders one depth image, weighs it and refines by it, as every frame of the filters does."""
-    import numpy as np
-
-    from course_lib.beyond.six_dof.refinement import compiled_normal_equations
-    from course_lib.commands.check import render_plane
-    from course_lib.depth_mcl.likelihood import compiled_likelihood
-    from course_lib.rendering.camera import DepthCamera
-
-    render_plane("raster")
-    compiled_likelihood(np.ones((2, 2), dtype=np.float32), np.ones((1, 2, 2), dtype=np.float32))
-    small = DepthCamera.from_fov(4, 3, 60.0, 45.0)
-    image = np.ones(small.shape, dtype=np.float32)
-    compiled_normal_equations(image, image[np.newaxis], small, 0.1)
-
-
 def simplify_corridor() -> None:
     """Simplifies the map that most lessons render."""
     from course_lib.paths import data_path
@@ -30,5 +14,7 @@ def simplify_corridor() -> None:
 
 
 if __name__ == "__main__":
-    compile_loops()
+    from course_lib.beyond import warm_up
+
+    warm_up()
     simplify_corridor()

@@ -6,6 +6,7 @@
     particle_filter  3.1 and 3.4, eqs (3), (4), (12): start, A-3
     localizer        figure 1: all of it in order
     uncertainty      how far off the estimate may be, which the paper's weights cannot say
+    one_at_a_time    two calls at once are refused
     fallon           the method that table 1 compares with
     evaluation       section 4: table 1
 
@@ -18,7 +19,7 @@ State vectors and particle sets, eqs (1) and (2), are in `course_lib.geometry`. 
 # ruff: noqa: F401 - the public names
 from course_lib.depth_mcl.evaluation import nearest_path_error, timed_error
 from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, weights
-from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning
+from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning, SlowFilterWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES, Motion, propagate
 from course_lib.depth_mcl.particle_filter import effective_sample_size, initial_particles, resample, weighted_mean_state
 from course_lib.depth_mcl.sequence import read_sequence
@@ -26,4 +27,4 @@ from course_lib.depth_mcl.sequence_files import SequenceError
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
 from course_lib.rendering.scene_map import SceneMap, SceneMapError
-from course_lib.rendering.sensor import depth_image_from_points
+from course_lib.rendering.sensor import depth_image_from_points, subsample_depth

@@ -17,6 +17,7 @@ from course_lib.rendering.compiled import compiled
 
 ALPHA = 0.1  # metres, paper 1, section 4
 BETA = 0.01  # no unit (a normalized likelihood), paper 1, section 4
+MAX_DEPTH = 100.0  # metres: no depth camera measures so far, but one that reaches 10 cm gives this in millimetres
 
 
 class DepthImageError(ValueError):
@@ -24,11 +25,29 @@ class DepthImageError(ValueError):
 
 
 def checked_image(depth: np.ndarray, camera: DepthCamera) -> np.ndarray:
-    """Return a depth image `(H, W)` as an array. Raises `DepthImageError` if it has another size than the camera's."""
+    """Return a depth image `(H, W)` as an array.
+
+    Raises `DepthImageError` if it has another size than the camera's, if it does not hold floating-point numbers, or if
+    more than half of what it measured lies beyond `MAX_DEPTH`. One image cannot show whether it holds depth along the
+    optical axis, as it must, or the length of each ray. You have to know: depth is that length divided by
+    `np.linalg.norm(camera.rays(), axis=-1)`.
+    """
     depth = np.asarray(depth)
     if depth.shape != camera.shape:
         raise DepthImageError(
             f"the depth image has shape {depth.shape}; the camera gives {camera.shape} (height, width)"
+        )
+    if depth.dtype.kind != "f":
+        raise DepthImageError(
+            f"the depth image holds {depth.dtype}; metres as float are expected. Whole numbers look like millimetres: "
+            "divide them by 1000"
+        )
+    limit = max(MAX_DEPTH, camera.far)
+    measured = depth[valid_pixels(depth)]
+    if 2 * np.count_nonzero(measured > limit) > len(measured):
+        raise DepthImageError(
+            f"more than half of the depth image lies beyond {limit:g} m; metres are expected. These look like "
+            "millimetres: divide them by 1000"
         )
     return depth
 

@@ -18,6 +18,13 @@ from course_lib.depth_mcl.particle_filter import weighted_mean_pose, weighted_me
 from course_lib.geometry import as_states, pose_matrix, rotation_exp, rotation_log, state_from_matrix, wrap_angle
 
 
+def scatter_angles(state: np.ndarray, deviations: np.ndarray) -> np.ndarray:
+    """Return the particles `(N, 6)` about a state: position, roll, pitch and yaw plus deviations. Undoes deviations."""
+    particles = as_states(state, "state") + as_states(deviations, "deviations")
+    particles[..., 3:] = wrap_angle(particles[..., 3:])
+    return particles
+
+
 class Motion(NamedTuple):
     """A part of the filter that can be exchanged; its functions are pure, and all three agree about the angles."""
 
@@ -26,6 +33,21 @@ class Motion(NamedTuple):
     mean: Callable[[np.ndarray, np.ndarray], np.ndarray]  # (particles `(N, 6)`, weights `(N,)`) -> state `(6,)`.
     deviations: Callable[[np.ndarray, np.ndarray], np.ndarray]
     """(particles `(N, 6)`, state `(6,)`) -> `(N, 6)`, metres along the world's axes, then radians."""
+    scatter: Callable[[np.ndarray, np.ndarray], np.ndarray] = scatter_angles
+    """(state `(6,)`, deviations `(N, 6)`) -> the particles `(N, 6)` that have these deviations."""
+
+
+def checked_covariance(covariance: np.ndarray) -> np.ndarray:
+    """Return a covariance `(6, 6)` as float64. Raises `ValueError` if it is none, or if its angles are in degrees."""
+    array = np.array(covariance, dtype=np.float64)
+    if array.shape != (6, 6) or not np.isfinite(array).all():
+        raise ValueError(f"a covariance must be a finite matrix (6, 6) of x, y, z, roll, pitch, yaw; got {array.shape}")
+    variances, largest = np.diag(array), np.abs(array).max()
+    if not np.allclose(array, array.T, atol=1e-9 * largest) or np.linalg.eigvalsh(array)[0] < -1e-9 * largest:
+        raise ValueError("a covariance must be symmetric, without negative eigenvalues: square metres, square radians")
+    if variances[3:].max() > np.pi**2:
+        raise ValueError(f"the variances of angles must be square radians; got {variances[3:].tolist()}, over pi^2")
+    return array
 
 
 def checked_sigma(sigma: np.ndarray) -> np.ndarray:
@@ -98,6 +120,14 @@ def angle_deviations(particles: np.ndarray, state: np.ndarray) -> np.ndarray:
     return deviations
 
 
+def scatter_rotations(state: np.ndarray, deviations: np.ndarray) -> np.ndarray:
+    """Return the particles `(N, 6)` about a state, turned by rotation vectors about the body's axes: R Exp(w)."""
+    matrices = np.tile(pose_matrix(state), (len(deviations), 1, 1))
+    matrices[:, :3, 3] += deviations[:, :3]
+    matrices[:, :3, :3] = matrices[:, :3, :3] @ rotation_exp(deviations[:, 3:])
+    return state_from_matrix(matrices)
+
+
 def rotation_deviations(particles: np.ndarray, state: np.ndarray) -> np.ndarray:
     """Return particles minus state `(N, 6)`, turns as rotation vectors about the body's axes: Log(R^T R_i)."""
     deviations = as_states(particles, "particles") - as_states(state, "state")
@@ -108,4 +138,4 @@ def rotation_deviations(particles: np.ndarray, state: np.ndarray) -> np.ndarray:
 
 WORLD_AXES = Motion(propagate, weighted_mean_state, angle_deviations)
 BODY_AXES = Motion(propagate_body, weighted_mean_state, angle_deviations)
-TANGENT_SPACE = Motion(propagate_tangent, weighted_mean_pose, rotation_deviations)
+TANGENT_SPACE = Motion(propagate_tangent, weighted_mean_pose, rotation_deviations, scatter_rotations)

@@ -12,7 +12,7 @@ from course_lib.beyond.look_alikes.evidence import detection_probabilities, free
 from course_lib.beyond.look_alikes.hypotheses import rotations
 from course_lib.beyond.look_alikes.matchers import matcher
 from course_lib.spherical_stereo.panorama import StereoRig
-from course_lib.spherical_stereo.ranging.object_positions import BOX_CENTRE_SIGMA, CENTROID_SIGMA
+from course_lib.spherical_stereo.ranging.object_positions import Noise
 from course_lib.spherical_stereo.ranging.triangulation import triangulation_covariance
 from course_lib.spherical_stereo.semantic_map.association import Association, Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
@@ -62,8 +62,8 @@ def stereo_covariance(place: np.ndarray) -> np.ndarray:
     """`(2, 2)` of an object at a place `(2,)` in the body frame, square metres, as `object_places` gives it."""
     upper = np.array([*place, OBJECT_HEIGHT - RIG.upper_height])
     lower = upper + np.array([0.0, 0.0, RIG.baseline])
-    sigma = BOX_CENTRE_SIGMA
-    return triangulation_covariance(upper, lower, RIG.baseline, sigma, sigma)[:2, :2] + CENTROID_SIGMA**2 * np.eye(2)
+    sigma, centroid, _ = Noise()
+    return triangulation_covariance(upper, lower, RIG.baseline, sigma, sigma)[:2, :2] + centroid**2 * np.eye(2)
 
 
 def ambiguity_map(

@@ -141,11 +141,6 @@ class DepthCamera:
     def projection_matrix(self) -> np.ndarray:
         """Return OpenGL's projection `(4, 4)`, z backward, y up; depth b = far (Z - near) / (Z (far - near))."""
         w, h, n, f = self.width, self.height, self.near, self.far
-        return np.array(
-            [
-                [2 * self.fx / w, 0.0, 1 - 2 * (self.cx + 0.5) / w, 0.0],
-                [0.0, 2 * self.fy / h, 2 * (self.cy + 0.5) / h - 1, 0.0],
-                [0.0, 0.0, -(f + n) / (f - n), -2 * f * n / (f - n)],
-                [0.0, 0.0, -1.0, 0.0],
-            ]
-        )
+        across = [2 * self.fx / w, 0.0, 1 - 2 * (self.cx + 0.5) / w, 0.0]
+        up = [0.0, 2 * self.fy / h, 2 * (self.cy + 0.5) / h - 1, 0.0]
+        return np.array([across, up, [0.0, 0.0, -(f + n) / (f - n), -2 * f * n / (f - n)], [0.0, 0.0, -1.0, 0.0]])

@@ -103,10 +103,6 @@ class MeshChunks:
         local = index.reshape(-1, 3) - vertex_starts[chunk][:, None]
         return vertices[own % len(vertices)], vertex_starts, np.ascontiguousarray(local, dtype=np.int32)
 
-    def faces_of(self, chunks: np.ndarray) -> np.ndarray:
-        """Return positions in chunk order of the triangles of the chunks marked in `(C,)` bool."""
-        return np.flatnonzero(np.repeat(chunks, np.diff(self.starts)))
-
 
 def lens_of(camera: DepthCamera) -> np.ndarray:
     """Return fx, fy, cx, cy, near and far `(6,)` float32 as the compiled loops read them."""

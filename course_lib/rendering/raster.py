@@ -54,9 +54,8 @@ class RasterBackend:
         starts = range(0, len(poses), VIEWS_A_TASK)
         threads = min(numba.config.NUMBA_NUM_THREADS, len(starts))
         if threads == 1:
-            for start in starts:
-                draw(start)
-        elif threads:
+            list(map(draw, starts))
+        else:
             # A pool for each call: it costs a tenth of a millisecond, and no thread is there to be lost in a fork.
             with ThreadPoolExecutor(threads) as pool:
                 list(pool.map(draw, starts))

@@ -41,16 +41,12 @@ class TrimeshCaster:
     def __init__(self, corners: np.ndarray) -> None:
         self._mesh = trimesh.Trimesh(**trimesh.triangles.to_kwargs(corners), process=False)
 
-    def cast(self, origins: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return what `EmbreeCaster.cast` returns."""
-        faces, rays, places = self._mesh.ray.intersects_id(
-            origins, directions, multiple_hits=False, return_locations=True
-        )
-        along = np.einsum("ij,ij->i", places - origins[rays], directions[rays])
-        distance, face = np.full(len(origins), np.inf), np.full(len(origins), -1)
-        distance[rays] = along / np.einsum("ij,ij->i", directions[rays], directions[rays])
-        face[rays] = faces
-        return distance, face, self._mesh.face_normals[face]
+    def cast(self, origins: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray]:
+        """Return what `EmbreeCaster.cast` returns first: the distances."""
+        places, rays, _ = self._mesh.ray.intersects_location(origins, directions, multiple_hits=False)
+        distance, along = np.full(len(origins), np.inf), directions[rays]
+        distance[rays] = np.einsum("ij,ij->i", places - origins[rays], along) / np.einsum("ij,ij->i", along, along)
+        return (distance,)
 
 
 class RayBackend:
@@ -82,5 +78,4 @@ class RayBackend:
 
     def describe(self) -> str:
         """Return the name of the ray caster."""
-        caster = self._anchor_and_caster[1]
-        return f"ray casting with {'Embree (embreex)' if isinstance(caster, EmbreeCaster) else 'trimesh'}"
+        return f"ray casting with {'trimesh' if EmbreeScene is None else 'Embree (embreex)'}"

@@ -15,7 +15,7 @@ import numpy as np
 import trimesh
 
 from course_lib.files import read_bytes
-from course_lib.geometry import is_rotation
+from course_lib.geometry import is_rotation, rotation_to_z_up
 
 _MIN_AREA = 1e-16  # square metres: a smaller triangle has no inside that a pixel centre could hit
 MAX_COORDINATE = 2e7  # metres, half the Earth's circumference: no map has its zero farther away
@@ -24,7 +24,7 @@ MAX_BUILDING = 200.0  # metres: a map that is larger in all three directions is 
 # Metres between possible anchors. A wall drawn 0.7 km from the anchor is wrong by 1 mm, at 80 m by 0.1 mm.
 _ANCHOR_STEP = 100.0
 
-_CURE = "To leave such triangles out: SceneMap.load(path, drop_far=True), or `localize --drop-far`"
+_CURE = "To leave such triangles out: drop_far=True, or `localize --drop-far`"
 
 
 class SceneMapError(ValueError):
@@ -38,31 +38,40 @@ class SceneMapWarning(UserWarning):
 class SceneMap:
     """Triangles in the world frame.
 
-    vertices: `(V, 3)` float64 metres. faces: `(F, 3)` int32 vertex indices; both sides of a triangle are seen. bounds:
-    `(2, 3)`. origin: `(3,)`, the median of the triangles' corners. Triangles without area are dropped. Raises
-    `SceneMapError` (a `ValueError`) for vertices or faces that make no map.
+    vertices: `(V, 3)` float64 metres. faces: `(F, 3)` int32 vertex indices; both sides of a triangle are seen. up: the
+    axis of the vertices that points up ("y", "-x", ...), which becomes z. drop_far: leave out triangles farther than
+    `MAX_DISTANCE` from the middle; those without area are left out always. bounds: `(2, 3)`. origin: `(3,)`, the median
+    of the corners. Warns (`SceneMapWarning`) of what looks like millimetres. Raises `SceneMapError` for no map.
     """
 
-    def __init__(self, vertices: np.ndarray, faces: np.ndarray) -> None:
+    def __init__(
+        self, vertices: np.ndarray, faces: np.ndarray, *, up: str = "z", drop_far: bool = False, _name: str = ""
+    ) -> None:
         # A copy, because the map is frozen below, and the caller's array must neither freeze with it nor change it.
         vertices = np.array(vertices, dtype=np.float64)
         faces = np.asarray(faces)
         if (vertices.shape[1:], faces.shape[1:]) != ((3,), (3,)) or not len(vertices) or not len(faces):
             raise SceneMapError(
-                f"the map needs triangles: vertices of shape (V, 3), faces of shape (F, 3); got {vertices.shape} and "
-                f"{faces.shape}. A point cloud has no faces: mesh it first"
+                f"{_name}the map needs triangles: vertices of shape (V, 3), faces of shape (F, 3); got "
+                f"{vertices.shape} and {faces.shape}. A point cloud has no faces: mesh it first"
             )
         if not np.isfinite(vertices).all():
-            raise SceneMapError("vertices are NaN or infinite; remove them from the mesh")
+            raise SceneMapError(f"{_name}vertices are NaN or infinite; remove them from the mesh")
         if not np.issubdtype(faces.dtype, np.integer) or faces.min() < 0 or faces.max() >= len(vertices):
             numbers = f"{faces.min()} to {faces.max()} ({faces.dtype})"
-            raise SceneMapError(f"faces must be whole numbers from 0 to {len(vertices) - 1}; got {numbers}")
+            raise SceneMapError(f"{_name}faces must be whole numbers from 0 to {len(vertices) - 1}; got {numbers}")
+        vertices = vertices @ rotation_to_z_up(up)[:3, :3].T
+        far, doubt = _far_triangles(vertices[faces])
+        if drop_far:
+            faces, doubt = faces[~far], ""
+        elif doubt and _name:
+            raise SceneMapError(_name + doubt)
         corners = vertices[faces]
-        if np.abs(corners).max() > MAX_COORDINATE:
-            raise SceneMapError(f"the map reaches beyond {MAX_COORDINATE:g} m: coordinates must be metres. {_CURE}")
+        if np.abs(corners).max(initial=0.0) > MAX_COORDINATE:
+            raise SceneMapError(f"{_name}the map reaches beyond {MAX_COORDINATE:g} m: are these metres? {_CURE}")
         keep = trimesh.triangles.area(corners) > _MIN_AREA
         if not keep.any():
-            raise SceneMapError(f"none of the {len(faces)} triangles has an area")
+            raise SceneMapError(f"{_name}none of the {len(faces)} triangles has an area")
         self.vertices = vertices
         self.faces = np.ascontiguousarray(faces[keep], dtype=np.int32)
         used = corners[keep].reshape(-1, 3)
@@ -70,25 +79,25 @@ class SceneMap:
         self.origin = np.median(used, axis=0)
         for array in (self.vertices, self.faces, self.bounds, self.origin):
             array.setflags(write=False)
+        size = np.ptp(self.bounds, axis=0)
+        if not doubt and size.min() > MAX_BUILDING:
+            doubt = f"the map is {' x '.join(f'{x:,.0f}' for x in size)} m large: are these millimetres?"
+        if doubt:
+            warnings.warn(_name + doubt, SceneMapWarning, stacklevel=3 if _name else 2)
 
     @classmethod
-    def load(cls, path: str | Path, drop_far: bool = False) -> SceneMap:
+    def load(cls, path: str | Path, drop_far: bool = False, *, up: str = "z") -> SceneMap:
         """Return the map in any mesh file that trimesh reads (PLY, OBJ, STL, GLB, ...), its vertices in metres.
 
-        drop_far: triangles farther than `MAX_DISTANCE` from the middle of the map are left out; else they are an error.
-        Warns (`SceneMapWarning`) of what looks like millimetres. Raises `FileNotFoundError`, or `SceneMapError` for a
-        file that cannot be read or holds fewer triangles than it announces (an OBJ announces nothing).
+        up, drop_far: as in the class. Raises `FileNotFoundError`, or `SceneMapError` for a file that cannot be read,
+        holds fewer triangles than it announces (an OBJ announces nothing), or has some far away without drop_far.
         """
-        vertices, faces = read_mesh(path)
-        try:
-            found = cls(vertices, _of_one_building(vertices, faces, drop_far))
-        except SceneMapError as error:
-            raise SceneMapError(f"{path}: {error}") from None
-        size = np.ptp(found.bounds, axis=0)
-        if size.min() > MAX_BUILDING:
-            told = " x ".join(f"{length:,.0f}" for length in size)
-            warnings.warn(f"{path}: the map is {told} m large: are these millimetres?", SceneMapWarning, stacklevel=2)
-        return found
+        return cls(*read_mesh(path), up=up, drop_far=drop_far, _name=f"{path}: ")
+
+    @classmethod
+    def from_trimesh(cls, mesh: trimesh.Trimesh | trimesh.Scene, *, up: str = "z", drop_far: bool = False) -> SceneMap:
+        """Return the map of a mesh or scene in memory, its vertices in metres; arguments and errors as in the class."""
+        return cls(*_triangles_of(mesh), up=up, drop_far=drop_far)
 
     def transformed(self, matrix: np.ndarray) -> SceneMap:
         """The map moved by a rigid transform `(4, 4)`."""
@@ -102,8 +111,6 @@ class SceneMap:
 
         It is the map's origin, or whole hundreds of metres from it, so that it seldom moves.
         """
-        if len(positions) == 0:
-            return self.origin
         middle = np.clip(np.median(positions, axis=0), *self.bounds)
         return self.origin + _ANCHOR_STEP * np.round((middle - self.origin) / _ANCHOR_STEP)
 
@@ -125,27 +132,21 @@ class SceneMap:
         return f"SceneMap({len(self.faces)} triangles, {size[0]:.1f} x {size[1]:.1f} x {size[2]:.1f} m)"
 
 
-def _of_one_building(vertices: np.ndarray, faces: np.ndarray, drop_far: bool) -> np.ndarray:
-    """Return the faces without those absurdly far from the median of all corners; an error unless `drop_far`."""
-    shapes = {np.shape(vertices)[1:], np.shape(faces)[1:]}
-    if shapes != {(3,)} or not len(faces) or faces.min() < 0 or faces.max() >= len(vertices):
-        return faces  # the map itself says what is wrong
-    corners = vertices[faces]
-    with np.errstate(invalid="ignore", over="ignore"):
-        sound = (np.abs(corners) <= MAX_COORDINATE).all(axis=(1, 2))  # not what is NaN
-        middle = np.median(corners[sound].reshape(-1, 3), axis=0) if sound.any() else np.zeros(3)
+def _far_triangles(corners: np.ndarray) -> tuple[np.ndarray, str]:
+    """Return which of the triangles `(F, 3, 3)` lie absurdly far from the median of all corners, and say it."""
+    sound = (np.abs(corners) <= MAX_COORDINATE).all(axis=(1, 2))
+    middle = np.median(corners[sound].reshape(-1, 3), axis=0) if sound.any() else np.zeros(3)
+    with np.errstate(over="ignore"):
         distance = np.linalg.norm(corners - middle, axis=2)
-        far_away = ~(distance <= MAX_DISTANCE).all(axis=1)
-    if drop_far:
-        return faces[~far_away]
-    if far_away.any() and np.isfinite(corners).all():
-        first = int(np.argmax(far_away))
-        x, y, z = corners[first][distance[first].argmax()]
-        raise SceneMapError(
-            f"{int(far_away.sum())} of {len(corners)} triangles lie over {MAX_DISTANCE:g} m from the map's middle: "
-            f"triangle {first} has a corner at ({x:g}, {y:g}, {z:g}). Are these millimetres? {_CURE}"
-        )
-    return faces
+    far_away = (distance > MAX_DISTANCE).any(axis=1)
+    if not far_away.any():
+        return far_away, ""
+    first = int(np.argmax(far_away))
+    x, y, z = corners[first][distance[first].argmax()]
+    return far_away, (
+        f"{int(far_away.sum())} of {len(corners)} triangles lie over {MAX_DISTANCE:g} m from the map's middle: "
+        f"triangle {first} has a corner at ({x:g}, {y:g}, {z:g}). Are these millimetres? {_CURE}"
+    )
 
 
 def mesh_endings() -> set[str]:
@@ -166,17 +167,23 @@ def read_mesh(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
         n_vertices, n_faces = _announced(data, kind)
         resolver = trimesh.resolvers.FilePathResolver(path)  # of the parts of a .gltf
         mesh = trimesh.load(io.BytesIO(data), kind, resolver=resolver, process=False, skip_materials=True)
-        if isinstance(mesh, trimesh.Scene):
-            mesh = mesh.to_mesh()
-        vertices, faces = mesh.vertices, getattr(mesh, "faces", np.empty((0, 3), dtype=np.int64))
+        vertices, faces = _triangles_of(mesh)
         if len(vertices) < n_vertices or len(faces) < n_faces:
-            raise ValueError(
-                f"{n_vertices} vertices and {n_faces} faces announced, {len(vertices)} and {len(faces)} there"
-            )
+            there = f"{len(vertices)} and {len(faces)} there"
+            raise ValueError(f"{n_vertices} vertices and {n_faces} faces announced, {there}")
     except Exception as reason:  # trimesh's readers raise errors of all kinds
         told = f"map {path} cannot be read as a mesh ({type(reason).__name__}: {reason}). Is the file complete?"
         raise SceneMapError(told) from reason
     return vertices, faces
+
+
+def _triangles_of(mesh: trimesh.Trimesh | trimesh.Scene) -> tuple[np.ndarray, np.ndarray]:
+    """Return the vertices `(V, 3)` and faces `(F, 3)` of what trimesh made; a point cloud has no faces."""
+    if isinstance(mesh, trimesh.Scene):
+        mesh = mesh.to_mesh()
+    if not hasattr(mesh, "vertices"):
+        raise SceneMapError(f"mesh must be a trimesh.Trimesh or a trimesh.Scene; got {type(mesh).__name__}")
+    return mesh.vertices, getattr(mesh, "faces", np.empty((0, 3), dtype=np.int64))
 
 
 def _announced(data: bytes, kind: str) -> tuple[int, int]:

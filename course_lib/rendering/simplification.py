@@ -24,7 +24,6 @@ MIN_TRIANGLES = 20_000  # a smaller map is drawn as it is, because there is noth
 # Quadric errors (square metres, weighed by areas) at which the merging of edges stops, one after the other.
 _QUADRIC_ERRORS = (1e-8, 1e-7, 3e-7, 6e-7, 1e-6, 2e-6, 4e-6, 8e-6, 2e-5, 5e-5)
 _CHECKED_VERTICES = 20_000
-_MIN_SHARE = 0.01  # of the triangles: VTK wants a number
 
 
 @lru_cache(maxsize=4)
@@ -52,7 +51,7 @@ def _simplify(
     for error in quadric_errors:
         decimation = vtkQuadricDecimation()
         decimation.SetInputData(left)
-        decimation.SetTargetReduction(1 - _MIN_SHARE)
+        decimation.SetTargetReduction(0.99)  # VTK wants a share to leave out; the error decides
         decimation.SetMaximumError(error)
         decimation.Update()
         fewer = decimation.GetOutput()

@@ -98,7 +98,6 @@ class VtkBackend:
         self._rows = 0
         self._tiles: list[vtkRenderer] = []
         self._buffer = vtkFloatArray()
-
         self._scene_map = scene_map
         self._chunks = MeshChunks(scene_map.vertices, scene_map.faces)
         self._faces = np.ascontiguousarray(scene_map.faces[self._chunks.order], dtype=np.int64)
@@ -106,7 +105,6 @@ class VtkBackend:
         self._map_data = vtkPolyData()
         self._map_actor = _plain_actor(self._map_data)
         self._upload_vertices(scene_map.origin)
-
         self._points_data = vtkPolyData()
         self._open_window()
 
@@ -227,7 +225,7 @@ class VtkBackend:
         visible = self._chunks.visible(self._drawn, poses, self._anchor)
         if (visible & ~self._drawn_chunks).any() or 2 * visible.sum() < self._drawn_chunks.sum():
             cells = vtkCellArray()
-            faces = self._faces[self._chunks.faces_of(visible)]
+            faces = self._faces[np.repeat(visible, np.diff(self._chunks.starts))]
             cells.SetData(3, numpy_to_vtkIdTypeArray(faces.ravel(), deep=True))
             self._map_data.SetPolys(cells)
             self._map_data.Modified()

@@ -14,8 +14,9 @@ them. Boxes and points on them are in edge coordinates (`panorama`).
 """
 
 # ruff: noqa: F401 - the public names
+from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
 from course_lib.spherical_stereo.detection.detected_object import Detection
-from course_lib.spherical_stereo.detection.detector import YoloDetector
+from course_lib.spherical_stereo.detection.detector import Detector, YoloDetector
 from course_lib.spherical_stereo.detection.seam import extend_seam
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.matching.features import SwappedImagesError
@@ -23,8 +24,9 @@ from course_lib.spherical_stereo.matching.object_matching import ObjectMatch, ma
 from course_lib.spherical_stereo.panorama import StereoRig, direction_to_pixel, open_view, pixel_to_direction
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_covariance, fit_rigid_2d
-from course_lib.spherical_stereo.ranging.object_positions import disparity_distance
+from course_lib.spherical_stereo.ranging.object_positions import Noise, disparity_distance
 from course_lib.spherical_stereo.ranging.triangulation import TriangulationError, triangulate, triangulation_covariance
+from course_lib.spherical_stereo.recording import read_stereo_boxes
 from course_lib.spherical_stereo.semantic_map.association import (
     Observation,
     PenaltyWeights,

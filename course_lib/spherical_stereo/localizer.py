@@ -8,8 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from course_lib.spherical_stereo.detection.colour import coloured
 from course_lib.spherical_stereo.detection.detected_object import boxes_on, canonical_label
-from course_lib.spherical_stereo.detection.detector import find_objects
+from course_lib.spherical_stereo.detection.detector import Detector, find_objects
 from course_lib.spherical_stereo.matching.features import MAX_TURN
 from course_lib.spherical_stereo.matching.object_matching import MIN_FEATURES, match_views, matched_indices
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
@@ -17,7 +18,7 @@ from course_lib.spherical_stereo.pose import localization as outcomes
 from course_lib.spherical_stereo.pose import rigid_fit
 from course_lib.spherical_stereo.pose.localization import OK, Localization, PlacedObject
 from course_lib.spherical_stereo.pose.rigid_fit import fit_rigid_2d
-from course_lib.spherical_stereo.ranging.object_positions import DISTANCES, Distance, max_range, position_objects
+from course_lib.spherical_stereo.ranging.object_positions import DISTANCES, Distance, Noise, max_range, position_objects
 from course_lib.spherical_stereo.ranging.triangulation import DIVERGING
 from course_lib.spherical_stereo.semantic_map.association import (
     Association,
@@ -37,10 +38,11 @@ class LocalizerError(ValueError):
 class SemanticLocalizer:
     """Pose of a spherical stereo camera on a semantic map.
 
-    detector: anything with `detect(image_bgr)`, needed by `localize` only. association: "greedy" (the paper's), or a
-    function that is called as `associate_greedy` is. distance: "box_centre", the paper's way, or "disparity", from the
-    matched features. weights and distance_term: of eq. (1). weighted_fit: True weights each pair by the covariance of
-    its observation; the paper counts all alike. image_size: (width, height) of panoramas whose images are not given.
+    detector: a `Detector`, needed by `localize` only. association: "greedy" (the paper's), or a function that is called
+    as `associate_greedy` is. distance: "box_centre", the paper's way, or "disparity", from the matched features.
+    weights and distance_term: of eq. (1). weighted_fit: True weighs each pair by the covariance of its observation, and
+    the paper counts all alike. noise: how exact detections are, for covariances and `max_range`. image_size: (width,
+    height) of panoramas whose images are not given.
     reject_implausible: False is the paper's method; True also asks that the cameras are aligned and their images of one
     moment, that an object has three matched features and is nearer than `max_range`, and that the residuals can be
     those of a right pose. Raises `LocalizerError` for a name that does not exist, `PanoramaError` for a size that no
@@ -51,7 +53,7 @@ class SemanticLocalizer:
         self,
         rig: StereoRig,
         semantic_map: SemanticMap,
-        detector=None,
+        detector: Detector | None = None,
         association: str | Callable[..., Association] = "greedy",
         distance: Distance = "box_centre",
         weights: PenaltyWeights = PenaltyWeights(),  # noqa: B008 (it cannot change)
@@ -59,12 +61,19 @@ class SemanticLocalizer:
         weighted_fit: bool = False,
         image_size: tuple[int, int] = IMAGE_SIZE,
         reject_implausible: bool = True,
+        noise: Noise = Noise(),  # noqa: B008 (it cannot change)
     ):
+        if detector is not None and (isinstance(detector, type) or not isinstance(detector, Detector)):
+            told = "an object with detect(image_bgr) -> list of Detection, such as YoloDetector.load(folder)"
+            raise LocalizerError(f"detector must be {told}; got {detector!r}")
         if association != "greedy" and not callable(association):
             raise LocalizerError(f'association must be "greedy" or called as associate_greedy is; got {association!r}')
         if distance not in DISTANCES:
             raise LocalizerError(f"distance must be one of {DISTANCES}; got {distance!r}")
         self.rig, self.semantic_map, self.detector = rig, semantic_map, detector
+        if not (np.isfinite(noise).all() and min(noise) >= 0 and noise[0] > 0):
+            raise LocalizerError(f"noise must be Noise(radians, metres, metres), the first above 0; got {noise}")
+        self.noise = Noise(*noise)
         self.association = associate_greedy if association == "greedy" else association
         self.distance, self.weights, self.distance_term = distance, PenaltyWeights(*weights), distance_term
         self.weighted_fit, self.reject_implausible = weighted_fit, bool(reject_implausible)
@@ -84,7 +93,8 @@ class SemanticLocalizer:
 
     def localize_views(self, upper: View, lower: View) -> Localization:
         """Return the pose from two panoramas with their detections: section 2.3 and on."""
-        return _walk(Localization(upper=upper, lower=lower), (self._match, self._range, self._associate, self._fit))
+        found = Localization(upper=coloured(upper), lower=coloured(lower))
+        return _walk(found, (self._match, self._range, self._associate, self._fit))
 
     def localize_detections(
         self,
@@ -100,9 +110,8 @@ class SemanticLocalizer:
         `PanoramaError` for a size that no panorama has. Source: paper 2, sections 2.4 to 2.6.
         """
         size = size or self.image_size
-        upper, lower = (View(*size, detections=side) for side in (upper_detections, lower_detections))
-        for name, view in (("upper", upper), ("lower", lower)):
-            boxes_on(view, name)
+        upper, lower = (coloured(View(*size, detections=side)) for side in (upper_detections, lower_detections))
+        boxes_on(upper, "upper"), boxes_on(lower, "lower")
         found = Localization(upper=upper, lower=lower, matches=tuple(matches))
         return _walk(found, (self._range, self._associate, self._fit))
 
@@ -146,10 +155,9 @@ class SemanticLocalizer:
     def _range(self, found: Localization) -> Localization:
         """2.4: place the matched objects. Those with a position and a class of the map are the observations."""
         pairs = matched_indices(found.matches, found.upper, found.lower)
-        furthest = max_range(self.rig.baseline) if self.reject_implausible else np.inf
-        positions = position_objects(
-            found.matches, pairs, found.upper, found.lower, self.rig, self.distance, furthest=furthest
-        )
+        furthest = max_range(self.rig.baseline, self.noise.box_centre) if self.reject_implausible else np.inf
+        views = found.upper, found.lower
+        positions = position_objects(found.matches, pairs, *views, self.rig, self.distance, self.noise, furthest)
         objects, observations = [], []
         for (i, j), (outcome, position, covariance) in zip(pairs, positions, strict=True):
             one = found.upper.detections[i]
@@ -169,10 +177,8 @@ class SemanticLocalizer:
         """2.5: pair the observations with landmarks."""
         if not found.observations:
             return found.unable(rigid_fit.TOO_FEW_PAIRS, "there is no observation to match to the map")
-        association = self.association(
-            found.observations, self.semantic_map, weights=self.weights, distance_term=self.distance_term
-        )
-        return replace(found, association=association)
+        how = {"weights": self.weights, "distance_term": self.distance_term}
+        return replace(found, association=self.association(found.observations, self.semantic_map, **how))
 
     def _fit(self, found: Localization) -> Localization:
         """2.6: fit the pose to the pairs of like classes. A matcher that weighed whole poses has one already."""

@@ -19,7 +19,7 @@ import numpy as np
 
 from course_lib.files import is_file, read_json
 from course_lib.spherical_stereo.detection import detected_object
-from course_lib.spherical_stereo.detection.colour import Box, mean_hue_saturation
+from course_lib.spherical_stereo.detection.colour import Box, coloured
 from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, View, open_pair, read_panorama
 
@@ -151,11 +151,8 @@ class StereoBoxes:
                 f"the boxes were drawn on images of {self.size} pixels, these have {views[0].size}: scale the images, "
                 "or draw the boxes again"
             )
-        filled = []
-        for view, side in zip(views, (self.upper, self.lower), strict=True):
-            found = [Detection(one.label, 1.0, one.box, *mean_hue_saturation(view.image, one.box)) for one in side]
-            filled.append(view.replace(detections=found))
-        return tuple(filled)
+        upper, lower = ([Detection(one.label, 1.0, one.box) for one in side] for side in (self.upper, self.lower))
+        return coloured(views[0].replace(detections=upper)), coloured(views[1].replace(detections=lower))
 
 
 def read_stereo_boxes(path: str | Path) -> StereoBoxes:

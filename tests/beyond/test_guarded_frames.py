@@ -22,12 +22,21 @@ def faults(period, *frames):
     return [order.look((image,), time).fault for image, time in frames]
 
 
-@pytest.mark.parametrize(("gap", "missed"), [(0.1, 0), (0.14, 0), (0.2, 1), (0.29, 2), (1.1, 10), (1e6, MAX_MISSED)])
+@pytest.mark.parametrize(("gap", "missed"), [(0.1, 0), (0.14, 0), (0.2, 1), (0.29, 2), (1.1, 10), (9e3, MAX_MISSED)])
 def test_a_gap_is_counted_in_frames(images, gap, missed):
     for period, expected in ((0.1, missed), (None, 0)):
         order = FrameOrder(period)
         order.look((images[0],), 5.0)
         assert order.look((images[1],), 5.0 + gap).missed == expected
+
+
+@pytest.mark.parametrize("unit", [1e6, 1e9])
+def test_times_in_another_unit_are_refused_and_change_nothing(images, unit):
+    order = FrameOrder(1 / 15)
+    order.look((images[0],), 5.0 * unit)
+    with pytest.raises(ValueError, match="Seconds are expected: divide nanoseconds by 1e9"):
+        order.look((images[1],), (5.0 + 1.5 / 15) * unit)
+    assert order.look((images[1],), 5.0 * unit + 1 / 15) == (None, 0)
 
 
 def test_times_that_are_not_later_are_out_of_order_until_the_clock_is_believed_and_same_values_are_a_repetition(images):

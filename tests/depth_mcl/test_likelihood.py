@@ -9,6 +9,8 @@ from scipy.integrate import quad
 from scipy.stats import truncnorm
 
 from course_lib.depth_mcl.fallon import (
+    COARSE_HEIGHT,
+    COARSE_WIDTH,
     depth_log_likelihood,
     disparity_log_likelihood,
     fallon_weighting,
@@ -124,6 +126,7 @@ def test_fallons_half_normal_and_truncated_normal_are_densities_and_the_score_a_
     assert density(5.0) == density(np.inf) == pytest.approx(0.33)  # a miss gets the uniform part alone
     with pytest.raises(ValueError, match="disparity"):
         fallon_weighting("squares")
+    assert 176 * 144 // (COARSE_WIDTH * COARSE_HEIGHT) == 84  # times as many terms at full size, as the module says
     scores = [
         fallon_weighting("disparity").score(np.array([z]), np.array([[[2.0] * len(z)]]))[0]
         for z in ([2.0], [2.0, np.nan], [2.0, 0.0, 0.3])

@@ -9,12 +9,12 @@ import pytest
 from course_lib.depth_mcl.evaluation import PAPER_TABLE_1, nearest_path_error, pose_errors, timed_error
 from course_lib.depth_mcl.fallon import fallon_weighting
 from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, paper_weighting, weights
-from course_lib.depth_mcl.localizer import MonteCarloLocalizer, NoMeasurementWarning
+from course_lib.depth_mcl.localizer import MonteCarloLocalizer, NoMeasurementWarning, SlowFilterWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES, propagate
 from course_lib.depth_mcl.particle_filter import Scheme, initial_particles, resample, weighted_mean_state
 from course_lib.geometry import pose_matrix, wrap_angle
 from course_lib.rendering.renderer import DepthRenderer
-from tests.rendering.shapes import SMALL, room, room_depth
+from tests.rendering.shapes import SMALL, furnished_room, room, room_depth
 
 START = np.array([0.5, -0.3, 0.2, 0.0, 0.0, 0.4])
 SIGMA = [0.05, 0.05, 0, 0, 0, 0.03]
@@ -114,6 +114,63 @@ def test_a_frame_without_measurement_moves_the_particles_says_so_and_the_filter_
         assert localizer.step(room_depth(SMALL, true[2])[0]).status == "ok"
 
 
+def test_with_three_components_good_frames_are_ok_and_lost_ones_doubtful(renderer):
+    assert {e.status for e in run(MonteCarloLocalizer(renderer, 150, SIGMA, seed=1), walk(10))} == {"ok"}
+    lost = MonteCarloLocalizer(renderer, 40, SIGMA)
+    lost.initialize(START + np.array([-2.0, 1.5, 0, 0, 0, 1.0]))
+    assert lost.step(room_depth(SMALL, START)[0]).status == "doubtful"
+
+
+def test_with_six_components_and_few_particles_wrong_poses_are_not_ok():
+    """As wrong as such a filter becomes: metres, in two of three frames."""
+    true = START + np.sin(np.arange(40)[:, None] * [0.15, 0.1, 0.15, 0.2, 0.2, 0.15]) * [1.0, 0.6, 0.3, 0.1, 0.15, 0.5]
+    with DepthRenderer(furnished_room(), SMALL) as renderer:
+        images, wrong = renderer.render(true), []
+        for seed in (1, 2):
+            localizer = MonteCarloLocalizer(renderer, 100, [0.05] * 3 + [0.03] * 3, seed=seed, motion=TANGENT_SPACE)
+            localizer.initialize(true[0])
+            for image, state in zip(images, true, strict=True):
+                estimate = localizer.step(image)
+                if np.linalg.norm(estimate.state[:3] - state[:3]) > 0.2:
+                    wrong.append(estimate.status)
+    assert len(wrong) > 40
+    assert wrong.count("ok") <= 0.05 * len(wrong)
+
+
+@pytest.mark.parametrize("motion", [BODY_AXES, WORLD_AXES, TANGENT_SPACE])
+def test_a_start_with_a_covariance_is_drawn_from_it(renderer, motion):
+    root = np.zeros((6, 6))
+    root[np.ix_([0, 1, 5], [0, 1, 5])] = [[0.3, 0, 0], [0.1, 0.2, 0], [0.02, -0.05, 0.1]]
+    localizer = MonteCarloLocalizer(renderer, 20_000, SIGMA, motion=motion)
+    start = START + np.array([0, 0, 0, 0, 0, np.pi])
+    localizer.initialize(start, root @ root.T)
+    deviations = motion.deviations(localizer.particles, start)
+    assert np.cov(deviations.T) == pytest.approx(root @ root.T, abs=0.002)
+    assert deviations[:, 2:5] == pytest.approx(np.zeros((20_000, 3)), abs=1e-12)
+    assert motion.scatter(start, deviations) == pytest.approx(localizer.particles, abs=1e-9)
+    localizer.initialize(START)
+    assert (localizer.particles == START).all()
+    for bad, said in (
+        (np.eye(5), r"\(6, 6\)"),
+        (np.triu(np.ones((6, 6))), "symmetric"),
+        (-np.eye(6), "negative eigenvalues"),
+        (np.diag([1, 1, 1, 0, 0, 100.0]), "square radians"),
+        (np.full((6, 6), np.nan), "finite"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            localizer.initialize(START, bad)
+
+
+def test_a_filter_that_would_be_slow_says_how_to_make_it_fast():
+    large = SMALL.resized(640, 480)
+    with DepthRenderer(room(), large, "raster") as renderer:
+        with pytest.warns(SlowFilterWarning, match=r"200 particles of 640 x 480 .*camera\.resized\(160, 120\)"):
+            MonteCarloLocalizer(renderer, 200)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            MonteCarloLocalizer(renderer, 100)
+
+
 @pytest.mark.filterwarnings("ignore::course_lib.depth_mcl.localizer.NoMeasurementWarning")
 @pytest.mark.parametrize("depth", [SMALL.near / 2, SMALL.far + 1])
 def test_what_the_views_cannot_show_is_no_measurement(renderer, depth):
@@ -183,9 +240,23 @@ def test_what_cannot_be_a_setting_a_start_or_a_frame_is_named(renderer):
     for state in ([20.0, 0, 0, 0, 0, 0], [np.nan] * 6, np.zeros(5)):
         with pytest.raises(ValueError, match=r"outside the map|state0"):
             localizer.initialize(state)
+    for angles in ((0, 0, 90), (4, 0, 0), (0, -5, 0)):
+        with pytest.raises(ValueError, match=r"look like degrees: give np\.deg2rad"):
+            localizer.initialize([0, 0, 0, *angles])
+    localizer.initialize([0, 0, 0, np.pi, -np.pi, 2 * np.pi])
     localizer.initialize(START)
-    with pytest.raises(DepthImageError, match=r"\(48, 64\)"):
-        localizer.step(np.ones((64, 48)))
+    before = localizer.particles.copy()
+    depth = room_depth(SMALL, START)[0]
+    millimetres = 1000 * depth
+    for image, said in (
+        (np.ones((64, 48)), r"\(48, 64\)"),
+        (millimetres.astype(np.uint16), "holds uint16; metres as float .* divide them by 1000"),
+        (millimetres, "millimetres: divide them by 1000"),
+        (np.where(depth > 2.9, millimetres, np.nan), "millimetres"),
+    ):
+        with pytest.raises(DepthImageError, match=said):
+            localizer.step(image)
+    assert np.array_equal(localizer.particles, before)
 
 
 def test_the_nearest_path_error_hides_error_along_the_path_and_the_timed_error_does_not():

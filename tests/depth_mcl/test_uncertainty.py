@@ -62,10 +62,13 @@ class Wall:
     """Stands for a renderer before a wall without a door: its "images" are the particles themselves, 9 m away."""
 
     scene_map = type("Everywhere", (), {"contains": staticmethod(lambda position, margin: True)})
-    camera = type("Camera", (), {"shape": (1, 6), "points": staticmethod(lambda depth: depth)})
+    camera = type("Camera", (), {"shape": (1, 6), "far": 20.0, "points": staticmethod(lambda depth: depth)})
 
     def batches(self, particles):
-        yield 9 + particles[:, None]
+        yield self.render(particles)
+
+    def render(self, states):
+        return 9 + np.atleast_2d(states)[:, None]
 
     def render_points(self, points):
         return points

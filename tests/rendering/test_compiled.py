@@ -1,7 +1,11 @@
 """Compiled loops are kept where they can be, and run where they cannot: read-only installations, damaged files."""
 
+import importlib
+import logging
+
 import pytest
 
+from course_lib.rendering import compiled as module
 from course_lib.rendering.compiled import compiled
 
 TWICE = "def twice(x):\n    return 2 * x\n"
@@ -33,3 +37,20 @@ def test_kept_code_that_is_damaged_is_compiled_anew(tmp_path, monkeypatch, damag
         assert kept
         for file in kept:
             file.write_bytes(damage)
+
+
+@pytest.mark.parametrize(("terminal", "level"), [(True, "WARNING"), (False, "INFO")])
+def test_compiling_is_announced_once_and_loading_is_not(tmp_path, monkeypatch, caplog, terminal, level):
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr("sys.stderr.isatty", lambda: terminal, raising=False)
+    caplog.set_level(logging.INFO, "course_lib")
+    head = "from course_lib.rendering.compiled import compiled\n\n\n@compiled()\n"
+    for name in (f"first_{level}", f"second_{level}"):
+        (tmp_path / f"{name}.py").write_text(head + TWICE)
+    module._announce.cache_clear()
+    made = [importlib.import_module(path.stem) for path in sorted(tmp_path.glob("*.py"))]
+    assert [one.twice(21) for one in made] == [42, 42]
+    assert [record.levelname for record in caplog.records] == [level]
+    module._announce.cache_clear()
+    assert importlib.reload(made[0]).twice(21) == 42
+    assert len(caplog.records) == 1

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from course_lib.geometry import UP_AXES, rotation_to_z_up
 from course_lib.rendering.scene_map import SceneMap, SceneMapError, SceneMapWarning
 from tests.rendering.shapes import room
 
@@ -163,7 +164,6 @@ def test_the_anchor_is_where_most_of_the_map_is_and_follows_the_cameras_by_whole
         np.concatenate([here.faces, here.faces + 8, [[16, 17, 18]]]),
     )
     assert np.array_equal(scene.anchor(scene.origin + np.full((3, 3), 40.0)), scene.origin)
-    assert np.array_equal(scene.anchor(np.zeros((0, 3))), scene.origin)
     there = scene.anchor(np.array([[1e6, 1, 2], [1e6 + 5, 0, 0], [0, 0, 0]]))
     assert np.abs(there - offset).max() <= 87
     assert np.array_equal(there, scene.anchor(np.array([[1e6 + 1, 0, 0]])))
@@ -171,6 +171,37 @@ def test_the_anchor_is_where_most_of_the_map_is_and_follows_the_cameras_by_whole
     assert np.abs(scene.anchor(np.array([[1e30, 0, 0]]))).max() < 1e6 + 100
     assert room(2.0).contains([[0, 0, 0], [1.5, 0, 0]], margin=0.0).tolist() == [True, False]
     assert room(2.0).contains([1.5, 0, 0], margin=1.0)
+
+
+def test_a_map_in_memory_is_that_of_its_file_and_up_becomes_z(tmp_path):
+    box = trimesh.creation.box((1, 2, 3), trimesh.transformations.translation_matrix((5, 0, 7)))
+    box.export(tmp_path / "map.ply")
+    for made in (
+        SceneMap.from_trimesh(box),
+        SceneMap.from_trimesh(trimesh.Scene(box)),
+        SceneMap(box.vertices, box.faces),
+    ):
+        assert np.allclose(made.bounds, [[4.5, -1, 5.5], [5.5, 1, 8.5]])
+    for up in UP_AXES:
+        turned = SceneMap.load(tmp_path / "map.ply", up=up)
+        for made in (
+            SceneMap.from_trimesh(box, up=up),
+            SceneMap.load(tmp_path / "map.ply").transformed(rotation_to_z_up(up)),
+        ):
+            assert np.allclose(made.bounds, turned.bounds)
+        assert np.allclose(turned.bounds.mean(axis=0)[2], np.dot((5, 0, 7), UP_AXES[up]))
+    with pytest.raises(ValueError, match="up must be one of"):
+        SceneMap.from_trimesh(box, up="up")
+    with pytest.raises(SceneMapError, match=r"must be a trimesh\.Trimesh or a trimesh\.Scene; got list"):
+        SceneMap.from_trimesh([box])
+    with pytest.raises(SceneMapError, match="needs triangles"):
+        SceneMap.from_trimesh(trimesh.PointCloud(np.eye(3)))
+
+
+def test_arrays_in_millimetres_are_doubted_like_a_file():
+    box = trimesh.creation.box((8, 8, 3)).subdivide()
+    with pytest.warns(SceneMapWarning, match=r"triangles lie over 5000 m .* Are these millimetres\? .* drop_far=True"):
+        SceneMap(box.vertices * 1000, box.faces)
 
 
 @pytest.mark.parametrize("coordinate", [6e3, 1e6, 3e7, -1e20])
@@ -186,9 +217,13 @@ def test_a_triangle_that_cannot_belong_to_a_building_is_named_and_can_be_dropped
 
 @pytest.mark.parametrize("scale", [[400, 400, 34], [34, 34, 34]])
 def test_a_map_that_looks_like_millimetres_is_used_with_a_warning(tmp_path, scale):
-    trimesh.Trimesh(room().vertices * scale, room().faces, process=False).export(tmp_path / "map.ply")
-    with pytest.warns(SceneMapWarning, match="are these millimetres"):
+    mesh = trimesh.Trimesh(room().vertices * scale, room().faces, process=False)
+    mesh.export(tmp_path / "map.ply")
+    with pytest.warns(SceneMapWarning, match=r"map\.ply: the map is .* are these millimetres") as told:
         SceneMap.load(tmp_path / "map.ply")
+    with pytest.warns(SceneMapWarning, match="the map is .* are these millimetres") as also_told:
+        SceneMap(mesh.vertices, mesh.faces)
+    assert {one.filename for one in (*told, *also_told)} == {__file__}
     trimesh.Trimesh(room().vertices * [400, 400, 33], room().faces, process=False).export(tmp_path / "map.ply")
     with warnings.catch_warnings():
         warnings.simplefilter("error")

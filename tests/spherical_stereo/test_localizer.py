@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from hypothesis import settings
 from hypothesis import strategies as st
 
 from course_lib.geometry import wrap_angle
+from course_lib.spherical_stereo import Noise, YoloDetector, mean_hue_saturation
 from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError, wrapped_box
 from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
 from course_lib.spherical_stereo.matching.object_matching import ObjectMatch
@@ -18,7 +20,7 @@ from course_lib.spherical_stereo.pose import localization as outcomes
 from course_lib.spherical_stereo.pose.rigid_fit import COINCIDENT, MIRRORED, TOO_FEW_PAIRS, Pose2D, rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import AssociationError, Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
-from tests.spherical_stereo.stereo_scene import ROOM
+from tests.spherical_stereo.stereo_scene import BASELINE, ROOM, KnowingDetector, mapped_scene, pair_from
 
 WIDTH, HEIGHT = 1280, 640
 RIG = StereoRig(0.3, 1.32)
@@ -48,7 +50,7 @@ def moved(detections, shift):
     return [replace(one, box=tuple(box)) for one, box in zip(detections, boxes, strict=True)]
 
 
-def localize(upper, lower, matches, semantic_map=ROOM, **options):
+def localize(upper=(), lower=(), matches=(), semantic_map=ROOM, **options):
     return SemanticLocalizer(RIG, semantic_map, **options).localize_detections(upper, lower, matches, (WIDTH, HEIGHT))
 
 
@@ -156,6 +158,12 @@ UPPER, LOWER, _ = views(POSE)
     [
         (LocalizerError, "association must be", lambda: localize(*views(POSE), association="best")),
         (LocalizerError, "distance must be one of", lambda: localize(*views(POSE), distance="lidar")),
+        (LocalizerError, r"detector must be an object with detect.*got <object", lambda: localize(detector=object())),
+        (LocalizerError, r"detector must be .*got <class", lambda: localize(detector=YoloDetector)),
+        (LocalizerError, "noise must be", lambda: localize(noise=(0.0, 0.1, 0.1))),
+        (DetectionError, "detect must return a list of Detection", lambda: detected([("sofa", 1.0)])),
+        (DetectionError, "detect must return a list of Detection", lambda: detected(None)),
+        (DetectionError, r"detection 0, sofa, has no colour: give hue", lambda: localize([bare(UPPER[0])], LOWER, [])),
         (PanoramaError, "twice as wide", lambda: SemanticLocalizer(RIG, ROOM, image_size=(100, 100))),
         (DetectionError, "names upper detection 0 and lower detection 9", lambda: localize(UPPER, LOWER, [(0, 9)])),
         (DetectionError, "joins a sofa to a chair", lambda: localize(UPPER, LOWER, [(0, 2)])),
@@ -169,13 +177,46 @@ UPPER, LOWER, _ = views(POSE)
         (LocalizerError, "observation 0 is a person", lambda: given("person", 1.0, 2.0, 30, 50)),
         (AssociationError, "observation: x and y", lambda: given("chair", math.nan, 2.0, 30, 50)),
         (LocalizerError, "no detector", lambda: PLAIN.localize(IMAGE, IMAGE)),
-        (PanoramaError, "one size", lambda: SemanticLocalizer(RIG, ROOM, "none").localize(IMAGE, IMAGE[:32, :64])),
-        (PanoramaError, "grey", lambda: SemanticLocalizer(RIG, ROOM, "none").localize(IMAGE, IMAGE[..., [0, 0, 0]])),
+        (
+            PanoramaError,
+            "one size",
+            lambda: SemanticLocalizer(RIG, ROOM, KnowingDetector()).localize(IMAGE, IMAGE[:32, :64]),
+        ),
+        (
+            PanoramaError,
+            "grey",
+            lambda: SemanticLocalizer(RIG, ROOM, KnowingDetector()).localize(IMAGE, IMAGE[..., [0, 0, 0]]),
+        ),
     ],
 )
 def test_a_mistake_of_the_callers_is_an_error_with_a_name(error, says, call):
     with pytest.raises(error, match=says):
         call()
+
+
+def bare(one):
+    return Detection(one.label, one.score, one.box)
+
+
+def detected(found):
+    """What becomes of two images in which a detector finds this."""
+    return SemanticLocalizer(RIG, ROOM, SimpleNamespace(detect=lambda image: found)).localize(IMAGE, IMAGE)
+
+
+def test_a_detector_of_ones_own_need_not_know_colours_which_are_measured_in_the_images():
+    *images, upper, lower = pair_from(0.0, 0.0)
+    plain = KnowingDetector((*images, [bare(one) for one in upper], [bare(one) for one in lower]))
+    found = SemanticLocalizer(StereoRig(BASELINE), mapped_scene()[2], plain).localize(*images)
+    assert found.pose is not None
+    for image, side in zip(images, (found.upper, found.lower), strict=True):
+        for one in side.detections:
+            assert (one.hue, one.saturation) == pytest.approx(mean_hue_saturation(image, one.box), nan_ok=True)
+
+
+def test_the_noise_of_the_detector_can_be_set():
+    rough, exact = (localize(*views(POSE), noise=Noise(sigma, 0.01, 0.01)) for sigma in (0.01, 0.002))
+    assert np.trace(exact.covariance) < 0.1 * np.trace(rough.covariance)
+    assert localize(*views(POSE), noise=Noise(0.1)).reason == outcomes.TOO_FEW_PLACED  # beyond `max_range`, 2.1 m
 
 
 def given(*values):

@@ -20,6 +20,7 @@ from course_lib.beyond.six_dof.poses import distinct, lengths, local
 from course_lib.beyond.six_dof.prediction import MotionPrediction
 from course_lib.beyond.six_dof.schedule import Level, pyramid
 from course_lib.depth_mcl.likelihood import paper_weighting
+from course_lib.depth_mcl.one_at_a_time import one_at_a_time
 from course_lib.geometry import optical_pose, rotation_exp, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 
@@ -88,10 +89,12 @@ class GlobalSearch:
         self._followed: list[_Followed] = []
         self._count = most
 
+    @one_at_a_time
     def forget(self) -> None:
         """Start anew, without candidates."""
         self._followed, self._count = [], self.most
 
+    @one_at_a_time
     def step(
         self,
         depth: np.ndarray,

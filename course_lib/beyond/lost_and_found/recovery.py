@@ -11,6 +11,7 @@ import numpy as np
 
 from course_lib.beyond.lost_and_found.global_search import TILT_SIGMA, GlobalSearch, PoseCandidates, same_place
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
+from course_lib.depth_mcl.one_at_a_time import one_at_a_time
 from course_lib.geometry import optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 
@@ -47,6 +48,7 @@ class RecoveringLocalizer:
         self._covered = self._searched = 0
         self._down = np.array([0.0, 1.0, 0.0])  # in the camera, of the last frame that was tracked: upright
 
+    @one_at_a_time
     def initialize(self, state0: np.ndarray) -> None:
         """Say where the camera is, as `AnnealedLocalizer.initialize` does."""
         self.localizer.initialize(state0)
@@ -54,6 +56,7 @@ class RecoveringLocalizer:
         self._short = self._long = None
         self._covered, self.searching = 0, False
 
+    @one_at_a_time
     def step(
         self, depth: np.ndarray, increment: np.ndarray | None = None, gravity: np.ndarray | None = None
     ) -> RecoveryEstimate:

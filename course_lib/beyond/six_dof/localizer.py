@@ -39,6 +39,7 @@ from course_lib.beyond.six_dof.schedule import LAYERS, SECOND_LOOK, STEPS, Layer
 from course_lib.depth_mcl.likelihood import checked_image, valid_pixels
 from course_lib.depth_mcl.localizer import NoMeasurementWarning, checked_start
 from course_lib.depth_mcl.motion import TANGENT_SPACE
+from course_lib.depth_mcl.one_at_a_time import one_at_a_time
 from course_lib.depth_mcl.particle_filter import resample
 from course_lib.depth_mcl.uncertainty import Tempered, temper
 from course_lib.geometry import optical_pose, state_from_optical_pose
@@ -116,12 +117,14 @@ class AnnealedLocalizer:
         self._judge = TrackJudge()
         self._covariance: np.ndarray | None = None
 
+    @one_at_a_time
     def initialize(self, state0: np.ndarray) -> None:
         """Say where the camera `(6,)` is before the first frame, to within `START_SPREAD`."""
         self._prediction = self._new_prediction(optical_pose(checked_start(state0, self.renderer.scene_map)))
         self._judge = TrackJudge()
         self._covariance = None
 
+    @one_at_a_time
     def step(self, depth: np.ndarray, increment: np.ndarray | None = None) -> AnnealedEstimate:
         """Return where the camera is, from a depth image `(H, W)` in metres, NaN = no measurement.
 
@@ -232,7 +235,7 @@ class AnnealedLocalizer:
         warnings.warn(
             "this frame holds no measurement between the camera's near and far planes; the pose is predicted only",
             NoMeasurementWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
         poses = self._prediction.draw(self.n_particles, spread, self.rng, increment)
         before = self._prediction.pose

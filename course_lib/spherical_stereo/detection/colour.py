@@ -7,7 +7,8 @@ import cv2
 import numpy as np
 
 from course_lib.geometry import circular_mean
-from course_lib.spherical_stereo.detection.detected_object import DetectionError
+from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError
+from course_lib.spherical_stereo.panorama import View
 
 GREY_SATURATION_PERCENT = 10.0  # mean saturation below which a thing is grey: a wrong white balance gives as much
 MIXED_HUES_RESULTANT = 0.2  # length of the mean hue vector (1: all hues equal) below which there is no mean hue
@@ -29,8 +30,12 @@ def mean_hue_saturation(
     """Return mean hue (degrees in [0, 360), NaN for grey) and mean saturation (percent) of part of an image.
 
     hue = direction of sum_i s_i (cos h_i, sin h_i), saturation = mean of s_i  over the pixels i of the central half of
-    `box`, or of `mask` (bool, (H, W)), or of the whole image. The paper takes plain means of H. Source: paper 2, 2.2.
+    `box`, or of `mask` (bool, (H, W)), or of the whole image. The paper takes plain means of H. Raises `DetectionError`
+    for an image that is not uint8 BGR `(H, W, 3)`, and a box or mask without a pixel. Source: paper 2, section 2.2.
     """
+    image_bgr = np.asarray(image_bgr)
+    if image_bgr.dtype != np.uint8 or image_bgr.ndim != 3 or image_bgr.shape[2] != 3:
+        raise DetectionError(f"image must be uint8 BGR (H, W, 3); got {image_bgr.dtype} of shape {image_bgr.shape}")
     if box is not None:
         image_bgr = _crop(image_bgr, central_half(box))
     pixels = (image_bgr if mask is None else image_bgr[mask]).reshape(-1, 1, 3)
@@ -39,6 +44,19 @@ def mean_hue_saturation(
     # 8-bit HSV would round hue to 2 degrees; float input gives H in degrees and S from 0 to 1.
     hsv = cv2.cvtColor(pixels.astype(np.float32) / 255, cv2.COLOR_BGR2HSV).reshape(-1, 3).astype(np.float64)
     return _mean_hue(hsv), float(100 * hsv[:, 1].mean())
+
+
+def coloured(view: View) -> View:
+    """Return a panorama whose detections have a colour: measured in its image if the detector gave none."""
+    found = list(view.detections)
+    for i, one in enumerate(found):
+        if np.isnan(getattr(one, "saturation", np.nan)):
+            if view.image is None:
+                told = f"detection {i}, {one.label}, has no colour: give hue and saturation (mean_hue_saturation)"
+                raise DetectionError(f"{told}, or the images, in which they are measured")
+            colour = mean_hue_saturation(view.image, one.box)
+            found[i] = Detection(one.label, getattr(one, "score", 1.0), one.box, *colour)
+    return view.replace(detections=found)
 
 
 def _mean_hue(hsv: np.ndarray) -> float:

@@ -39,14 +39,15 @@ class Detection:
     """One object found in a panorama. Raises `DetectionError` for values outside their range.
 
     label: class, kept as its canonical label. score: confidence, 0 to 1. box: (u_min, v_min, u_max, v_max), pixels,
-    edge coordinates. hue: degrees in [0, 360), NaN for grey, which has none. saturation: percent, 0 to 100.
+    edge coordinates. hue: degrees in [0, 360), NaN for grey, which has none. saturation: percent, 0 to 100; NaN with
+    hue NaN if nobody measured the colour, which `coloured` then measures in the image.
     """
 
     label: str
     score: float
     box: tuple[float, float, float, float]
-    hue: float
-    saturation: float
+    hue: float = math.nan
+    saturation: float = math.nan
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "label", canonical_label(self.label))
@@ -59,21 +60,12 @@ class Detection:
                 "box must be four finite numbers (u_min, v_min, u_max, v_max), 0 <= u_min < u_max and 0 <= v_min < "
                 f"v_max; got {self.box}"
             )
-        if not (0 <= self.score <= 1 and 0 <= self.saturation <= 100 and (self.is_grey or 0 <= self.hue < 360)):
+        is_hue, has_none = self.is_grey or 0 <= self.hue < 360, self.is_grey and math.isnan(self.saturation)
+        if not (0 <= self.score <= 1 and is_hue and (has_none or 0 <= self.saturation <= 100)):
             raise DetectionError(
                 "score must be 0 to 1, hue in degrees, [0, 360), or NaN for grey, saturation in percent, 0 to 100; got "
                 f"{self.score}, {self.hue} and {self.saturation}"
             )
-
-    @property
-    def centre(self) -> tuple[float, float]:
-        """Return (u, v) of the box's centre, pixels, edge coordinates. u may pass the image's width."""
-        return ((self.box[0] + self.box[2]) / 2, (self.box[1] + self.box[3]) / 2)
-
-    @property
-    def size(self) -> tuple[float, float]:
-        """Return (width, height) of the box in pixels."""
-        return (self.box[2] - self.box[0], self.box[3] - self.box[1])
 
     @property
     def is_grey(self) -> bool:
@@ -83,7 +75,7 @@ class Detection:
     def describe(self) -> str:
         """Return one line for people: label, score, colour and place."""
         colour = "grey, no hue" if self.is_grey else f"hue {self.hue:.0f} deg"
-        u, v = self.centre
+        u, v = box_centre(self.box)
         return f"{self.label} {self.score:.2f}, {colour}, saturation {self.saturation:.0f} %, centre ({u:.0f}, {v:.0f})"
 
 

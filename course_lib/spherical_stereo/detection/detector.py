@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import cv2
 import numpy as np
 
 from course_lib.files import is_given, read_json
 from course_lib.spherical_stereo.detection import seam
-from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
+from course_lib.spherical_stereo.detection.colour import coloured
 from course_lib.spherical_stereo.detection.darknet import DarknetNetwork, DetectorError, check_names, read_names
-from course_lib.spherical_stereo.detection.detected_object import Detection, canonical_label
+from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError, canonical_label
 from course_lib.spherical_stereo.detection.onnx_network import OnnxNetwork
 from course_lib.spherical_stereo.panorama import View, open_view
 
@@ -20,10 +21,21 @@ MAX_CANDIDATES = 1000  # Boxes kept before suppression, the best by score: a bou
 PADDING_GREY = 127  # Grey level of the letterbox's padding. Darknet fills with 0.5.
 
 
-def find_objects(view: View, detector) -> View:
-    """Return the panorama with what a detector finds in it. detector: anything with `detect(image_bgr)`."""
+@runtime_checkable
+class Detector(Protocol):
+    """What a localizer needs of a detector: `YoloDetector` is one, your own may be another."""
+
+    def detect(self, image_bgr: np.ndarray) -> Sequence[Detection]:
+        """Return the objects of a panorama, uint8 BGR `(H, 2 H, 3)`: `Detection(label, score, box)`, colour or not."""
+
+
+def find_objects(view: View, detector: Detector) -> View:
+    """Return the panorama with what a detector finds in it, in colour."""
     # Our own detector takes the view, which was checked already; any other takes the image.
-    return view.replace(detections=detector.detect(view if isinstance(detector, YoloDetector) else view.image))
+    found = detector.detect(view if isinstance(detector, YoloDetector) else view.image)
+    if not (isinstance(found, Sequence) and all(isinstance(one, Detection) for one in found)):
+        raise DetectionError(f"detect must return a list of Detection(label, score, box); got {found!r}"[:300])
+    return coloured(view.replace(detections=found))
 
 
 class YoloDetector:
@@ -114,11 +126,9 @@ class YoloDetector:
             boxes, scores, classes = seam.select_on_circle(*found, view.width, self.iou_threshold)
         else:
             boxes, scores, classes = self.detect_in_plane(view.image)
-        colours = [mean_hue_saturation(view.image, tuple(box)) for box in boxes.tolist()]
-        return [
-            Detection(self.labels[index], min(score, 1.0), tuple(box), *colour)
-            for box, score, index, colour in zip(boxes.tolist(), scores.tolist(), classes, colours, strict=True)
-        ]
+        rows = zip(classes, scores.tolist(), boxes.tolist(), strict=True)
+        found = [Detection(self.labels[index], min(score, 1.0), tuple(box)) for index, score, box in rows]
+        return list(coloured(view.replace(detections=found)).detections)
 
     def detect_in_plane(self, image_bgr: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return boxes (n, 4), scores and indices (n,) into `labels` in a flat image `(H, W, 3)`, the surest first."""

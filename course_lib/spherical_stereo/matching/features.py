@@ -108,9 +108,8 @@ class FeatureMatches:
 def match_features(upper: PanoramaFeatures, lower: PanoramaFeatures, may_be_swapped: bool = False) -> FeatureMatches:
     """Match whole panoramas without the epipolar constraint. Raises `SwappedImagesError` unless `may_be_swapped`."""
     first, second = _mutual_matches(upper.descriptors, lower.descriptors)
-    (azimuth_u, elevation_u), (azimuth_l, elevation_l) = (
-        (angles[0][chosen], angles[1][chosen]) for angles, chosen in ((upper.angles(), first), (lower.angles(), second))
-    )
+    azimuth_u, elevation_u = (angle[first] for angle in upper.angles())
+    azimuth_l, elevation_l = (angle[second] for angle in lower.angles())
     disparity = elevation_l - elevation_u
     epipolar = epipolar_residual(azimuth_u, elevation_u, azimuth_l, elevation_l) <= EPIPOLAR_TOLERANCE
     if not may_be_swapped:
@@ -181,10 +180,9 @@ def camera_alignment(upper: PanoramaFeatures, lower: PanoramaFeatures) -> Alignm
     middle = (edges[peak] + edges[peak + 1]) / 2
     azimuth, elevation = azimuth_elevation_of_pixel(matches.keypoints_lower, lower.width, lower.height)
     # On the sphere an azimuth difference is as long as the cosine of the elevation.
-    rows = np.column_stack(
-        [np.sin(elevation) * np.cos(azimuth), np.sin(elevation) * np.sin(azimuth), -np.cos(elevation)]
-    )
-    beyond = np.cos(elevation) * wrap_angle(gap - middle)
+    sine, cosine = np.sin(elevation), np.cos(elevation)
+    rows = np.column_stack([sine * np.cos(azimuth), sine * np.sin(azimuth), -cosine])
+    beyond = cosine * wrap_angle(gap - middle)
     near = np.abs(beyond) < _NEAR
     if near.sum() < MIN_AGREEING:
         return Alignment(None, float(near.mean()))

@@ -57,14 +57,9 @@ class Residuals(NamedTuple):
     degrees_of_freedom: int  # 2 n - 3.
 
     @property
-    def max_chi_square(self) -> float:
-        """Return the limit of chi^2: `NOISE_FACTOR`^2 times its quantile at `DOUBT`."""
-        return NOISE_FACTOR**2 * float(chi2.isf(DOUBT, self.degrees_of_freedom))
-
-    @property
     def contradict_the_pose(self) -> bool:
-        """Return True if no pose near this one explains the pairs."""
-        return self.chi_square > self.max_chi_square
+        """Return True if no pose near this one explains the pairs: chi^2 > `NOISE_FACTOR`^2 its quantile at `DOUBT`."""
+        return self.chi_square > NOISE_FACTOR**2 * chi2.isf(DOUBT, self.degrees_of_freedom)
 
     @property
     def normalized(self) -> float:
@@ -203,9 +198,7 @@ def residual_statistics(
     return Residuals(float(expected), float(unexplained @ unexplained), 2 * n - 3)
 
 
-def _checked_pairs(
-    source, target, weights, covariances
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray | None]:
+def _checked_pairs(source, target, weights, covariances) -> tuple[np.ndarray, ...]:
     """Return the arguments of `fit_rigid_2d` as arrays, without pairs of weight 0."""
     source, target = (np.asarray(points, dtype=np.float64) for points in (source, target))
     n = len(source) if source.ndim else 0

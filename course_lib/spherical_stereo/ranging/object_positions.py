@@ -19,10 +19,6 @@ from course_lib.spherical_stereo.ranging.triangulation import OK, PARALLEL, tria
 
 Distance = Literal["box_centre", "disparity"]
 DISTANCES: tuple[Distance, ...] = ("box_centre", "disparity")
-# Standard deviations, all chosen.
-BOX_CENTRE_SIGMA = 0.0075  # radians, of a box centre's azimuth and elevation: 1.5 pixels at a width of 1280
-CENTROID_SIGMA = 0.1  # metres, of the object's centroid about the point that its box's centre shows
-SURFACE_SIGMA = 0.15  # metres, from the centroid to the surface that the features lie on: a quarter of a sofa's depth
 TOO_FAR, TOO_FEW_MATCHES = "too far", "too few matches"  # Outcomes beside those of the triangulation.
 MIN_MATCHES = 3  # With fewer matches a median says nothing about its own spread.
 _NORMAL_OVER_MAD = 1.4826  # standard deviation of a normal distribution over its median absolute deviation
@@ -30,11 +26,11 @@ _MEDIAN_OVER_MEAN = 1.2533  # standard deviation of the median over that of the 
 
 
 class Noise(NamedTuple):
-    """What makes a position uncertain, as standard deviations (the constants above)."""
+    """What makes a position uncertain, as standard deviations, all chosen."""
 
-    box_centre: float = BOX_CENTRE_SIGMA
-    centroid: float = CENTROID_SIGMA
-    surface: float = SURFACE_SIGMA
+    box_centre: float = 0.0075  # radians, of a box centre's azimuth and elevation: 1.5 pixels at a width of 1280
+    centroid: float = 0.1  # metres, of the object's centroid about the point that its box's centre shows
+    surface: float = 0.15  # metres, from the centroid to the surface with the features: a quarter of a sofa's depth
 
 
 class ObjectPosition(NamedTuple):
@@ -43,11 +39,6 @@ class ObjectPosition(NamedTuple):
     outcome: str  # "ok", "parallel", "diverging", "azimuth gap", "too few matches" or "too far".
     position: np.ndarray = np.full(3, np.nan)  # X `(3,)`, metres
     covariance: np.ndarray = np.full((2, 2), np.nan)  # of its horizontal part, square metres
-
-    @property
-    def distance_m(self) -> float:
-        """Return d, along the upper camera's direction of the box centre."""
-        return float(np.linalg.norm(self.position))
 
     @property
     def horizontal_range_m(self) -> float:
@@ -81,9 +72,9 @@ class MeasuredObject(NamedTuple):
     disparity: ObjectPosition
 
 
-def max_range(baseline: float) -> float:
-    """Return the horizontal range (m) at which the parallax is its own sigma: baseline / (sqrt(2) BOX_CENTRE_SIGMA)."""
-    return baseline / (2**0.5 * BOX_CENTRE_SIGMA)
+def max_range(baseline: float, sigma: float = Noise().box_centre) -> float:
+    """Return the horizontal range (m) at which the parallax is its own sigma: baseline / (sqrt(2) sigma), radians."""
+    return baseline / (2**0.5 * sigma)
 
 
 def disparity_distance(match, width: int, height: int, baseline: float) -> DisparityDistance:
@@ -141,13 +132,12 @@ def measure_objects(
     pairs = [(match.upper, match.lower) for match in matches]
     noise = Noise(2 * np.pi / upper.width * sigma_pixels, 0.0, 0.0)
     by_boxes, by_features = (position_objects(matches, pairs, upper, lower, rig, way, noise) for way in DISTANCES)
-    measured = []
-    for match, *found in zip(matches, by_boxes, by_features, strict=True):
-        direction = pixel_to_direction(box_centre(upper.detections[match.upper].box), *upper.size)
-        azimuth = float(np.degrees(panorama.azimuth_elevation(direction)[0]))
-        label = canonical_label(match.label)
-        measured.append(MeasuredObject(match.upper, match.lower, label, match.n_matches, azimuth, *found))
-    return measured
+    centres = box_centre(np.array([upper.detections[i].box for i, _ in pairs]).reshape(-1, 4))
+    azimuths = np.degrees(panorama.azimuth_elevation_of_pixel(centres, *upper.size)[0]).tolist()
+    return [
+        MeasuredObject(m.upper, m.lower, canonical_label(m.label), m.n_matches, *found)
+        for m, *found in zip(matches, azimuths, by_boxes, by_features, strict=True)
+    ]
 
 
 def _from_box_centres(from_upper, from_lower, baseline: float, noise: Noise) -> list[ObjectPosition]:

@@ -64,9 +64,8 @@ def triangulate(direction_upper: np.ndarray, direction_lower: np.ndarray, baseli
 
 def object_position(direction_upper: np.ndarray, direction_lower: np.ndarray, baseline: float) -> np.ndarray:
     """Return positions X = d x_hat `(..., 3)` in metres, in the upper camera's frame (x forward, y left, z up)."""
-    distance = triangulate(direction_upper, direction_lower, baseline)
-    azimuth, elevation = azimuth_elevation(direction_upper)
-    return distance[..., None] * direction_from_angles(azimuth, elevation)
+    unit = direction_from_angles(*azimuth_elevation(direction_upper))
+    return triangulate(direction_upper, direction_lower, baseline)[..., None] * unit
 
 
 def triangulation_covariance(
@@ -89,9 +88,8 @@ def triangulation_covariance(
     for sigma in (np.asarray(sigma_azimuth), np.asarray(sigma_elevation)):
         if not (np.isfinite(sigma).all() and (sigma >= 0).all()):
             raise PanoramaError(f"a sigma must be finite radians, not negative; got {sigma}")
-    rho = triangulate(direction_upper, direction_lower, baseline)
     azimuth, upper, _, lower, _ = _angles(direction_upper, direction_lower)
-    rho = rho * np.cos(upper)
+    rho = triangulate(direction_upper, direction_lower, baseline) * np.cos(upper)
     azimuth, sigma_azimuth, sigma_elevation = np.broadcast_arrays(azimuth, sigma_azimuth, sigma_elevation)[:3]
     along = np.stack([np.cos(azimuth), np.sin(azimuth), np.broadcast_to(np.tan(upper), azimuth.shape)], axis=-1)
     by_azimuth = rho[..., None] * np.stack([-np.sin(azimuth), np.cos(azimuth), np.zeros_like(azimuth)], axis=-1)

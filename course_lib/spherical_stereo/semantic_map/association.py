@@ -135,9 +135,8 @@ def penalty_table(
     x, y, hue, saturation = np.array(numbers, dtype=np.float64)[..., None]
     rows = Observation(np.array(labels, dtype=object)[:, None], x, y, hue, saturation)
     map_x, map_y = semantic_map.positions.T[:, None]
-    columns = Observation(
-        np.array(semantic_map.labels)[None], map_x, map_y, semantic_map.hues[None], semantic_map.saturations[None]
-    )
+    map_colours = semantic_map.hues[None], semantic_map.saturations[None]
+    columns = Observation(np.array(semantic_map.labels)[None], map_x, map_y, *map_colours)
     centroid = np.array([x.mean(), y.mean()])
     return penalty(rows, columns, centroid, semantic_map.centroid, weights, distance_term)
 

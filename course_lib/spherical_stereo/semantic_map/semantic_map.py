@@ -130,10 +130,7 @@ class SemanticMap:
 
         Raises `SemanticMapError` for another ending, `OSError` if the file cannot be written.
         """
-        rows = [
-            {name: None if value != value else value for name, value in asdict(landmark).items()}
-            for landmark in self.landmarks
-        ]
+        rows = [{name: None if x != x else x for name, x in asdict(one).items()} for one in self.landmarks]
         ending = Path(path).suffix.lower()
         if ending == ".json":
             content = {"version": VERSION, "name": self.name, "landmarks": rows}

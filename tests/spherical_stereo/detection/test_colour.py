@@ -28,11 +28,23 @@ def test_a_plain_surface_has_its_own_hue_and_saturation(hue):
     assert saturation == pytest.approx(60, abs=0.7)
 
 
-@pytest.mark.parametrize("colour", [bgr(30, 0), bgr(30, 5), bgr(200, 8), (0, 0, 0), (255, 255, 255)])
+@pytest.mark.parametrize("colour", [bgr(30, 0), bgr(30, 5), bgr(200, 9.5), (0, 0, 0), (255, 255, 255)])
 def test_grey_has_no_hue(colour):
     hue, saturation = mean_hue_saturation(plain(colour))
     assert math.isnan(hue)
     assert 0 <= saturation < 10
+    assert mean_hue_saturation(plain(bgr(30, 10.5)))[0] == pytest.approx(30, abs=3)
+
+
+@pytest.mark.parametrize(("start", "share"), [(29.4, 0.9), (29.5, 0.9), (29.6, 1.0)])
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_pixel_belongs_to_a_box_if_its_centre_does(start, share, turned):
+    """Half the columns, or rows, are grey: those up to the 30th."""
+    image = np.where(np.arange(80)[None, :, None] < 30, np.uint8(200), bgr(0, 80))[np.zeros(80, int)].astype(np.uint8)
+    box = np.array([start - 5, 10, start + 15, 50])
+    if turned:
+        image, box = image.swapaxes(0, 1), box[[1, 0, 3, 2]]
+    assert mean_hue_saturation(image, tuple(box))[1] == pytest.approx(share * 80, abs=0.5)
 
 
 def test_hues_of_all_directions_have_no_mean_and_noise_in_the_dark_has_no_say():
@@ -60,6 +72,9 @@ def test_a_box_across_the_seam_is_measured_as_if_the_panorama_were_turned(rng):
 
 
 def test_no_colour_is_made_up_where_there_is_none():
+    for image in (np.ones((4, 8, 3)), np.ones((4, 8), np.uint8)):
+        with pytest.raises(DetectionError, match=r"image must be uint8 BGR \(H, W, 3\)"):
+            mean_hue_saturation(image)
     for arguments in ({"mask": np.zeros((40, 80), dtype=bool)}, {"box": (5, 5, 5, 9)}, {"box": (5, 50, 9, 90)}):
         with pytest.raises(DetectionError, match=r"no pixel is left|u_min < u_max"):
             mean_hue_saturation(plain((1, 2, 3)), **arguments)

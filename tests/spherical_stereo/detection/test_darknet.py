@@ -68,6 +68,9 @@ def test_a_cfg_keeps_its_order_options_and_lines_and_comes_back_from_its_text(tm
     assert darknet.class_count(sections) == 2
     with pytest.raises(darknet.DetectorError, match=r"\[yolo\] or \[region\]"):
         darknet.class_count(sections[:-1])
+    other = darknet.Section("yolo", {"classes": "3"}, 20)
+    with pytest.raises(darknet.DetectorError, match=r"must agree on classes; they have \[2, 3\]"):
+        darknet.class_count([*sections, other])
     again = darknet.parse_cfg(darknet.render_cfg(sections))
     assert [(s.kind, s.options) for s in again] == [(s.kind, s.options) for s in sections]
 

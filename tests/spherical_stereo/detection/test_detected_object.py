@@ -56,9 +56,13 @@ def test_boxes_that_cannot_be_are_named(bad):
         objects.box_iou([bad], [[0, 0, 1, 1]], WIDTH)
 
 
-def test_a_detection_knows_its_centre_and_its_place_on_the_circle():
+def test_a_detection_has_its_canonical_label_and_its_place_on_the_circle_with_a_colour_or_without():
     detection = objects.Detection("Couch", 0.5, (250, 10, 270, 40), 20.0, 55.0)
-    assert (detection.label, detection.centre) == ("sofa", (260, 25))
+    assert detection.label == "sofa"
+    assert "hue 20 deg, saturation 55 %, centre (260, 25)" in detection.describe()
+    bare = objects.Detection("Couch", 0.5, (250, 10, 270, 40))
+    assert bare.is_grey
+    assert np.isnan(bare.saturation)
     assert objects.box_centre(detection.box).tolist() == [260, 25]
     assert objects.wrapped_box((506, 10, 526, 40), 256).tolist() == list(detection.box)
 

@@ -53,6 +53,23 @@ def test_outputs_of_another_layout_are_refused_with_their_shapes(layout):
         decode_onnx([np.zeros((1, 9, 8))], layout, 2, (100, 80))
 
 
+@pytest.mark.parametrize(
+    ("layout", "outputs"),
+    [
+        ("yolov4", [SHARES, CONFIDENCES, CONFIDENCES]),
+        ("yolov4", [CONFIDENCES, CONFIDENCES]),
+        ("yolov4", [SHARES, SHARES]),
+        ("yolov4", [SHARES, np.repeat(CONFIDENCES, 2, axis=1)]),
+        ("yolov8", [np.ones((1, 6, 3))] * 2),
+        ("yolov8", [np.ones((2, 6, 3))]),
+        ("yolov8", [np.ones((1, 6))]),
+    ],
+)
+def test_a_layout_needs_its_own_number_of_outputs_and_of_their_rows(layout, outputs):
+    with pytest.raises(DetectorError, match=rf"layout {layout} .*the file gives"):
+        decode_onnx(outputs, layout, 2, (100, 80))
+
+
 def refused(path, names, says, layout="yolov8", input_size=INPUT_SIZE):
     with pytest.raises(DetectorError, match=says):
         YoloDetector.from_onnx(path, names, layout=layout, input_size=input_size)

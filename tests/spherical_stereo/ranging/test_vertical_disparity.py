@@ -60,19 +60,18 @@ def test_both_distances_of_rendered_boards_are_right():
     for m, board in zip(measured, boards, strict=True):
         assert np.cos(np.radians(m.azimuth_deg) - board.azimuth) > np.cos(0.01)
         assert 0 < m.box_centre.horizontal_sigma_m < 1.5
-        assert m.box_centre.distance_m >= m.box_centre.horizontal_range_m
 
 
-def boxed(elevation):
-    """A view of one box whose centre is straight ahead at an elevation (radians)."""
-    u, v = direction_to_pixel(direction_from_angles(0.0, elevation), *SIZE)
+def boxed(elevation, azimuth=0.0):
+    """A view of one box whose centre is at an elevation and an azimuth (radians)."""
+    u, v = direction_to_pixel(direction_from_angles(azimuth, elevation), *SIZE)
     return View(*SIZE, detections=[Seen("chair", (u - 9, v - 5, u + 9, v + 5))])
 
 
 def test_box_centres_without_a_distance_keep_the_name_of_their_outcome(rng):
     (measured,) = measure_objects([match_of(face(rng, 20, 2.5))], boxed(-0.3), boxed(-0.4), RIG)
     assert (measured.box_centre.outcome, measured.disparity.outcome) == ("diverging", "ok")
-    assert np.isnan(measured.box_centre.distance_m)
+    assert np.isnan(measured.box_centre.position).all()
 
 
 def test_the_sigma_of_a_range_is_that_of_the_pixels():
@@ -84,3 +83,13 @@ def test_the_sigma_of_a_range_is_that_of_the_pixels():
     assert measured.box_centre.horizontal_range_m == pytest.approx(rho)
     assert measured.box_centre.horizontal_sigma_m == pytest.approx(expected)
     assert max_range(0.3) == pytest.approx(28.28, abs=0.01)
+
+
+@pytest.mark.parametrize("azimuth", [0.0, np.pi / 4, 2.0, -2.5])
+def test_a_position_from_exact_features_is_uncertain_only_across_the_line_of_sight(azimuth):
+    along, across = np.array([[np.cos(azimuth), np.sin(azimuth)], [-np.sin(azimuth), np.cos(azimuth)]])
+    match = match_of(np.array([[*2 * along, -1]] * 3))
+    (measured,) = measure_objects([match], boxed(-0.4, azimuth), boxed(-0.3, azimuth), RIG)
+    pixel = 2 * np.pi / 1280
+    assert measured.disparity.position[:2] == pytest.approx(2 * along)
+    assert measured.disparity.covariance == pytest.approx((2 * pixel) ** 2 * np.outer(across, across), abs=1e-12)

@@ -1,0 +1,22 @@
+"""What takes seconds at the first step on a computer can be done before the first image comes."""
+
+import numpy as np
+
+from course_lib.beyond.six_dof.refinement import compiled_normal_equations
+from course_lib.depth_mcl.likelihood import compiled_likelihood
+from course_lib.rendering.camera import DepthCamera
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
+
+
+def warm_up() -> None:
+    """Compile every loop of the filters now: draw one image, weigh it, and refine by it.
+
+    The first call on a computer takes seconds, later ones a moment, because compiled code is kept.
+    """
+    camera = DepthCamera.from_fov(4, 3, 60.0, 45.0)
+    wall = SceneMap(np.array([[2.0, -5, -5], [2, 5, -5], [2, 0, 5]]), np.array([[0, 1, 2]]))
+    with DepthRenderer(wall, camera, "raster") as renderer:
+        images = renderer.render(np.zeros(6))
+    compiled_likelihood(images[0], images)
+    compiled_normal_equations(images[0], images, camera, 0.1)
