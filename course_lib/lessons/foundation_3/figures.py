@@ -35,7 +35,7 @@ def update_figure(before: tuple, z: float, sigma: float, after: tuple) -> Figure
     axes.set(title="One update: only the place is measured", xlabel="place [m]", ylabel="speed [m/s]")
     axes.legend(**figures.BESIDE)
     alt = """Place and speed: a long tilted ellipse, the prediction; an upright band, the measured place; where both
-        meet, a small ellipse, lower in speed than the prediction."""
+        meet, a small ellipse, higher in speed than the prediction."""
     return described(figure, alt)
 
 

@@ -22,6 +22,7 @@ CHOSEN = {
     "00": "00-second-picture", "01": "01-order-picture", "03": "03-tiles-picture", "07": "07-idea-comb",
     "08": "08-figure-5", "09": "09-same-budget-picture", "10": "10-narrowing-scores-picture",
     "14": "14-places-picture", "15": "15-panel", "19": "19-stages",
+    "F1": "F1-measure-sizes", "F3": "F3-joins",
 }  # fmt: skip
 MAX_SIZE = (420, 230)  # (width, height) in pixels
 MAX_BYTES = 30_000
