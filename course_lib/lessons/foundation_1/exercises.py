@@ -52,6 +52,12 @@ def share_left(variance, innovation, r):
     return r * np.sqrt(two) / one * np.exp(-(innovation**2) * variance / (one * two))
 
 
+def bell(variance, innovation, squared_width):
+    """Return the mean of a bell over particles of this variance, whose mean lies `innovation` off its middle."""
+    total = squared_width + variance
+    return np.sqrt(squared_width / total) * np.exp(-(innovation**2) / (2 * total))
+
+
 # fmt: off
 EXERCISES = [
     Exercise("F1.1", carry, weighted, "warm-up", cases={
@@ -63,12 +69,15 @@ EXERCISES = [
         product = w * likelihood => product = w + likelihood
         You add. Independent measurements multiply their probabilities.
         product / product.sum() => product
+        product / product.sum() => w * likelihood / likelihood.sum()
+        product / product.sum() => product / np.linalg.norm(product)
         Your weights do not sum to one. Divide by their sum before you count.
         product / product.sum() => product / product.max()
         Your largest weight is one. The *sum* of all weights must be one.
         1 / np.sum(new**2) => 1 / np.sum(w**2)
         Your weights are right. You count with the old ones: take the new ones.
         1 / np.sum(new**2) => np.sum(new**2)
+        1 / np.sum(new**2) => len(new) * np.sum(new**2)
         Your weights are right. The effective sample size is one *over* the sum of their squares.
         1 / np.sum(new**2) => 1 / np.sum(new) ** 2
         Square each weight first, then add. Yours is the square of the sum, which is always one.
@@ -97,14 +106,21 @@ EXERCISES = [
         >= share * n => < share * n
         The decision is the wrong way round: resample where the effective sample size is *small*.
         np.full(n, 1 / n) => w
+        np.full(n, 1 / n) => w[indices]
         np.full(n, 1 / n) => w[indices] / np.sum(w[indices])
         After resampling each copy weighs 1/N. You keep the weights, so they count twice: once as copies.
+        np.full(n, 1 / n) => np.ones(n)
+        After resampling all your weights are 1. They must sum to one, so each is 1/N.
         / np.sum(w * likelihood) =>
         Your weights do not sum to one. Divide by their sum before you decide.
         n, w = len(w), w * => n, old, w = len(w), w, w * and also 1 / np.sum(w**2) => 1 / np.sum(old**2)
         You decide by the weights before this frame. Its measurement is what makes them uneven.
+        1 / np.sum(w**2) => np.sum(likelihood) ** 2 / np.sum(likelihood**2)
+        You decide by this frame's likelihood alone. The carried weights say how many particles take part.
         np.cumsum(w) => np.cumsum(likelihood / np.sum(likelihood))
         You draw by this frame's likelihood. Draw by the carried weights.
+        return x[indices] => return indices
+        You give back the numbers of the drawn particles. The task asks for the particles themselves.
         return x[indices] => return x
         Your weights are right. These are the old particles: take the drawn ones.
         1 / np.sum(w**2) => 1 / np.max(w)
@@ -119,14 +135,17 @@ EXERCISES = [
         "a sharp sensor": lambda rng: (1.0, rng.normal(0, 0.2), 0.01),
         "all at one place": lambda rng: (0.0, 1.0, 0.5),
     }, mistakes="""
-        ... => return r / np.sqrt(r**2 + variance) * np.exp(-(innovation**2) / 2 / (r**2 + variance))
+        ... => return bell(variance, innovation, r**2)
         That is the mean weight. N_eff / N is its *square*, divided by the mean of the squared weight.
-        ... => return r**2 / (r**2 + variance) * np.exp(-(innovation**2) / (r**2 + variance))
+        ... => return bell(variance, innovation, r**2) ** 2
         That is the square of the mean weight. Divide it by the mean of the squared weight.
-        two = r**2 + variance, r**2 + 2 * variance => two = r**2 + variance, r**2 + variance
-        A squared bell is narrower: its variance is r^2 / 2. Your two integrals have the same one.
-        two = r**2 + variance, r**2 + 2 * variance => two = r**2 + variance, 2 * r**2 + variance
-        The squared bell is *narrower* than the bell, so halve r^2. Yours doubles it.
+        ... => return bell(variance, innovation, r**2 / 2)
+        That is the mean of the squared weight. It belongs below the line.
+        ... => return bell(variance, innovation, r**2) / bell(variance, innovation, r**2 / 2)
+        The mean weight, above the line, enters squared.
+        ... => return bell(variance, innovation, r**2) ** 2 / bell(variance, innovation, r**2)
+        ... => return bell(variance, innovation, r**2) ** 2 / bell(variance, innovation, 2 * r**2)
+        The squared bell is *narrower* than the bell: its variance is half of r^2.
         * np.exp(-(innovation**2) * variance / (one * two)) =>
         Yours holds for a measurement in the middle of the particles. How far off it lies counts, too.
         * variance / (one * two) => * variance / (2 * one * two)
@@ -134,7 +153,8 @@ EXERCISES = [
         r * np.sqrt(two) / one => 1
         The exponent is right. Each integral also has a factor in front, a ratio of two widths.
         r * np.sqrt(two) / one * => one / (r * np.sqrt(two)) *
-        The factor in front is upside down: a share is at most one.
+        ... => return 1 / share_left(variance, innovation, r)
+        Something is upside down: a share is at most one.
         + variance => + variance**2 and also 2 * variance => 2 * variance**2 and also * variance / => * variance**2 /
         `variance` is squared already. It adds to r^2 as it is.
         (innovation**2) => np.abs(innovation)

@@ -54,7 +54,7 @@ def beliefs_figure(seed: int, frames: list[int], shares: dict[str, np.ndarray] |
     for a, frame in zip(np.atleast_1d(axes), frames, strict=True):
         draw_corridor(a, exact[frame - 1], 1.1 * max(exact[frame - 1].max(), 0.2))
         for index, (name, one) in enumerate((shares or {}).items()):
-            style = figures.line_style(2 * index + 3) | {"linestyle": "none", "markersize": 6}
+            style = figures.line_style(3 * index + 3) | {"linestyle": "none", "markersize": 6}
             a.plot(MIDDLES, one[frame - 1], **style, label=name)
         a.axvline(true[frame - 1], color=figures.BLACK, linestyle="--", linewidth=1.3, label="wagon")
         a.set(title=f"after frame {frame}", xlabel="")

@@ -71,6 +71,7 @@ EXERCISES = [
         "nearly useless beside good": lambda rng: (rng.normal(size=(2, 2)), np.array([np.eye(2), 1e4 * np.eye(2)])),
     }, mistakes="""
         certainties.sum(axis=0) => certainties.mean(axis=0)
+        means), covariance => means), np.linalg.inv(certainties.mean(axis=0))
         You average the certainties. They *add*: each further estimate makes the result surer.
         covariance @ np.einsum("nij,nj->i", certainties, means) => means.mean(axis=0)
         Your covariance is right. Your mean weighs all estimates alike: weigh each by its certainty.
@@ -85,6 +86,9 @@ EXERCISES = [
         You invert number by number. A certainty is the inverse of the *matrix*.
         np.linalg.inv(covariances) => np.array([np.diag(1 / np.diag(P)) for P in covariances])
         You use the variances alone. How the numbers err together, off the diagonal, counts, too.
+        ... => return means.mean(axis=0), covariances.mean(axis=0)
+        ... => return means.mean(axis=0), covariances.mean(axis=0) / len(means)
+        That weighs all estimates alike. Weigh each by its certainty, the inverse of its covariance.
         means), covariance => means), covariances.mean(axis=0)
         Your mean is right. Your covariance is the mean of the given ones, as if nothing was gained.
         means), covariance => means), covariances.sum(axis=0) / len(means) ** 2
@@ -102,7 +106,8 @@ EXERCISES = [
         F @ P @ F.T + Q => P + Q
         The covariance moves, too: F P F^T turns what is unknown in the speed into what is unknown in the place.
         F @ P @ F.T + Q => F @ P + Q
-        F stands on both sides of P, the second time transposed. Yours is not symmetric.
+        F @ P @ F.T + Q => F.T @ P @ F + Q
+        The covariance moves by F P F^T, with F on its left and the transpose of F on its right.
         for one in z: => for one in np.nan_to_num(z):
         You take a gap for a measurement of 0. In a gap there is nothing to update.
         if not np.isnan(one).any(): => if True: and also one - H @ x => np.nan_to_num(one - H @ x)
@@ -115,6 +120,8 @@ EXERCISES = [
         Your covariance never shrinks. After a measurement it is (I - K H) P.
         P - K @ H @ P => P - K @ H @ P + K @ R @ K.T
         You add K R K^T once too often. (I - K H) P holds the noise of the measurement already.
+        P - K @ H @ P => (np.eye(len(x)) - K @ H) @ P @ (np.eye(len(x)) - K @ H).T
+        With (I - K H) on both sides of P, the noise K R K^T must be added. With it on one side, nothing.
         x, P = F @ x, F @ P @ F.T + Q => pass and also (P) => (P); x = F @ x; P = F @ P @ F.T + Q
         You update first and predict then. The task begins each frame with a prediction.
     """),
@@ -127,12 +134,17 @@ EXERCISES = [
         That holds for independent errors. C must make the second estimate count less.
         P0 + P1 - C - C.T => P0 + P1
         Your S leaves out C. The difference x1 - x0 has less noise if both err together.
+        P0 + P1 - C - C.T => P0 + P1 - C
         P0 + P1 - C - C.T => P0 + P1 - 2 * C
         C is not symmetric: the covariance of x1 - x0 has C once as it is and once transposed.
         P0 + P1 - C - C.T => P0 + P1 + C + C.T
         That is the covariance of the sum. You need that of the difference, x1 - x0.
         K = (P0 - C) => K = P0
         Your K leaves out C. Where both err together, x1 - x0 says less about the error of x0.
+        K = (P0 - C) => K = (P1 - C.T)
+        That is the weight of x0. K is the weight of x1, which grows with the uncertainty of x0.
+        (P0 - C) @ np.linalg.inv(S) => np.linalg.inv(S) @ (P0 - C)
+        The inverse of S stands on the wrong side. Matrices do not commute.
         K = (P0 - C) => K = (P0 - C.T)
         Which is transposed? C = E[e0 e1^T], and K must fit the error of x0 to the difference.
         P0 - K @ (P0 - C).T => P0 - K @ P0
