@@ -143,7 +143,6 @@ EXERCISES = [
         That is the mean of the squared weight. It belongs below the line.
         ... => return bell(variance, innovation, r**2) / bell(variance, innovation, r**2 / 2)
         The mean weight, above the line, enters squared.
-        ... => return bell(variance, innovation, r**2) ** 2 / bell(variance, innovation, r**2)
         ... => return bell(variance, innovation, r**2) ** 2 / bell(variance, innovation, 2 * r**2)
         The squared bell is *narrower* than the bell: its variance is half of r^2.
         * np.exp(-(innovation**2) * variance / (one * two)) =>
