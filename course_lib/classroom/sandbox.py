@@ -95,7 +95,7 @@ def library_copy(folder: Path) -> Iterator[Path]:
             return {name for name in names if not name.endswith((".nbi", ".nbc"))}
         if here.name == "classroom":
             return set(names) - set(IN_CLASSROOM)
-        kept_back = KEPT_BACK if here.name.startswith(("lesson_", "project_")) else ()
+        kept_back = KEPT_BACK if here.name.startswith(("lesson_", "foundation_", "project_")) else ()
         return {"commands"} if here.name == "course_lib" else set(kept_back)
 
     shutil.copytree(REPOSITORY / "course_lib", folder / "course_lib", ignore=left_out)

@@ -6,6 +6,7 @@ from dataclasses import asdict
 import nbformat
 import pytest
 
+from course_lib.classroom.assignment_cells import read_assignments
 from course_lib.classroom.grading import function_names
 from course_lib.classroom.judge import from_json, judge, lessons_of
 from course_lib.classroom.points import earned
@@ -13,7 +14,7 @@ from course_lib.classroom.sandbox import Limits
 from course_lib.lessons.kit.exercises import find_exercise
 from tests.classroom.handed_in import assignment_of, handed_in, mistaken, solved
 
-STUBS = function_names()
+STUBS = function_names(read_assignments())
 
 
 @pytest.fixture

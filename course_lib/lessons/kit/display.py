@@ -38,7 +38,10 @@ def show(figure: Figure, alt: str = "", photograph: bool = False) -> None:
 
 
 def require_labels(figure: Figure) -> None:
-    """Raise `FigureError` unless every axes has a title and labels with units in square brackets."""
+    """Raise `FigureError` unless every axes has a title and labels with units in square brackets.
+
+    A drawing, whose axes are off, has nothing to label: it needs its title only.
+    """
     for axes in figure.axes:
         x, y = axes.get_xlabel(), axes.get_ylabel()
         labels = {"x": x or figure.get_supxlabel(), "y": y or figure.get_supylabel()}
@@ -46,7 +49,7 @@ def require_labels(figure: Figure) -> None:
             labels = {"colour bar": x or y}
         elif not (any(map(axes.get_title, ("left", "center", "right"))) or figure.get_suptitle()):
             raise FigureError("this figure has no title: set one with axes.set_title(...)")
-        for name, label in labels.items():
+        for name, label in labels.items() if axes.axison else ():
             if not re.search(r"\[[^\]]+\]", label):
                 raise FigureError(f"the {name} label {label!r} has no unit: write it as 'depth Z [m]' or 'weight [-]'")
 

@@ -2,7 +2,7 @@
 
     python -m course_lib.lessons.kit.series_pictures
 
-writes notebooks/pictures/NN.png for every lesson. Run it again when a lesson's picture has changed.
+writes notebooks/pictures/NN.png for every lesson and foundation. Run it again when a lesson's picture has changed.
 """
 
 import base64
@@ -15,13 +15,14 @@ from PIL import Image
 
 from course_lib.files import atomic_write
 from course_lib.lessons.kit.compression import small_png
-from course_lib.paths import REPOSITORY, notebook_paths
+from course_lib.paths import REPOSITORY, foundation_paths, notebook_paths
 
 # Lesson -> the cell whose picture we use. Of a lesson that is not listed, we use the first picture.
 CHOSEN = {
     "00": "00-second-picture", "01": "01-order-picture", "03": "03-tiles-picture", "07": "07-idea-comb",
     "08": "08-figure-5", "09": "09-same-budget-picture", "10": "10-narrowing-scores-picture",
     "14": "14-places-picture", "15": "15-panel", "19": "19-stages",
+    "F1": "F1-measure-sizes", "F3": "F3-joins",
 }  # fmt: skip
 MAX_SIZE = (420, 230)  # (width, height) in pixels
 MAX_BYTES = 30_000
@@ -40,7 +41,7 @@ def stored_picture(path: Path, cell_id: str | None) -> Image.Image:
 def write_pictures(folder: Path) -> list[Path]:
     """Write NN.png of every lesson into `folder` and return the paths. Raises `ValueError`."""
     folder.mkdir(parents=True, exist_ok=True)
-    lessons = {path.name[:2]: path for path in notebook_paths()}
+    lessons = {path.name[:2]: path for path in [*notebook_paths(), *foundation_paths()]}
     for number, path in lessons.items():
         picture = stored_picture(path, CHOSEN.get(number))
         width = min(MAX_SIZE[0], MAX_SIZE[1] * picture.width // picture.height)
