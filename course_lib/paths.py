@@ -30,6 +30,16 @@ def notebook_paths() -> list[Path]:
     return sorted((REPOSITORY / "notebooks").glob("[0-9][0-9]_*.ipynb"))
 
 
+def foundation_paths() -> list[Path]:
+    """The foundations, `notebooks/foundations/Fn_title.ipynb`, in order. They have the shape of lessons."""
+    return sorted((REPOSITORY / "notebooks" / "foundations").glob("F[0-9]_*.ipynb"))
+
+
 def project_paths() -> list[Path]:
     """The projects, `notebooks/projects/Pn_title.ipynb`, in order."""
     return sorted((REPOSITORY / "notebooks" / "projects").glob("P[0-9]_*.ipynb"))
+
+
+def numbered_paths() -> dict[str, Path]:
+    """Return number ("06", "F1", "P1") -> path of every lesson, foundation and project, in this order."""
+    return {path.name[:2]: path for path in [*notebook_paths(), *foundation_paths(), *project_paths()]}

@@ -26,7 +26,7 @@ from course_lib.commands.saved_panels import drop_widgets
 from course_lib.commands.test import OFFLINE_STARTUP
 from course_lib.files import atomic_write, temporary_folder
 from course_lib.lessons.kit.exercises import Exercise, find_exercise
-from course_lib.paths import REPOSITORY, STORE_SCENES, notebook_paths, project_paths
+from course_lib.paths import REPOSITORY, STORE_SCENES, numbered_paths
 
 MAX_BYTES = 400_000
 HANGS_S = 1800.0  # only what hangs takes so long
@@ -43,7 +43,7 @@ class RefreshError(RuntimeError):
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `refresh`."""
-    what = "lessons and projects, such as 03 or P1 (default: all)"
+    what = "lessons and projects, such as 03, F1 or P1 (default: all)"
     parser.add_argument("lessons", nargs="*", metavar="NN", help=what)
     parser.add_argument("--solutions", action="store_true", help="write stubs and solutions only; run nothing")
     what = "seconds a cell may take (default: %(default)g)"
@@ -72,7 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def select(lessons: list[str]) -> list[Path]:
     """Notebooks of these lessons ("03") and projects ("P1"), all of them for none."""
-    paths = {path.name[:2]: path for path in [*notebook_paths(), *project_paths()]}
+    paths = numbered_paths()
     wanted = [number.zfill(2) for number in lessons] or sorted(paths)
     unknown = sorted(set(wanted) - set(paths))
     if unknown or not wanted:

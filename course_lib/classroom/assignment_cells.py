@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import nbformat
 
-from course_lib.paths import notebook_paths, project_paths
+from course_lib.paths import numbered_paths
 
 
 class AssignmentError(ValueError):
@@ -25,7 +25,7 @@ class ExerciseCells(NamedTuple):
 
 
 class Assignment(NamedTuple):
-    """One lesson or project: its name ("06", "P1"), its path, and its notebook as it is stored."""
+    """One lesson or project: its name ("06", "F1", "P1"), its path, and its notebook as it is stored."""
 
     name: str
     path: Path
@@ -71,7 +71,7 @@ def tag_of(cell: nbformat.NotebookNode) -> str:
 
 def read_assignments(names: list[str] | None = None) -> list[Assignment]:
     """Return the lessons and projects of these names (default: all). Raises `AssignmentError` for an unknown name."""
-    paths = {path.name[:2]: path for path in [*notebook_paths(), *project_paths()]}
+    paths = numbered_paths()
     wanted = list(dict.fromkeys(name.zfill(2) for name in names)) if names else list(paths)
     if unknown := [name for name in wanted if name not in paths]:
         raise AssignmentError(f"there is no lesson {', '.join(unknown)}; there are: {', '.join(paths)}")

@@ -81,7 +81,8 @@ def library_copy(folder: Path) -> Iterator[Path]:
 
     def left_out(place: str, names: list[str]) -> set[str]:
         here = Path(place)
-        out = {name for name in names if name in KEPT_BACK and here.name.startswith(("lesson_", "project_"))}
+        taught = here.name.startswith(("lesson_", "foundation_", "project_"))
+        out = {name for name in names if taught and name in KEPT_BACK}
         out |= {"commands"} if here.name == "course_lib" else set()
         if here.name == "classroom":
             out |= set(names) - set(IN_CLASSROOM)

@@ -15,7 +15,7 @@ from pathlib import Path
 from course_lib.files import atomic_write
 
 NOTEBOOKS, WORK, MEMORY = "notebooks", "work", ".copies.json"
-LESSONS = ("[0-9][0-9]_*.ipynb", "projects/P[0-9]_*.ipynb")
+LESSONS = ("[0-9][0-9]_*.ipynb", "foundations/F[0-9]_*.ipynb", "projects/P[0-9]_*.ipynb")
 # What lessons show and link to. Not among it: projects/solutions, and scenes/yours, where a student's own scenes go.
 COMPANIONS = ("*.md", "pictures/*", "scenes/*.html", "projects/*.md")
 # Sections whose stored outputs answer the predictions at a lesson's start. A student's copy has none there.
@@ -23,7 +23,7 @@ MEASURED = ("## Measure", "## Break it", "## Recap")
 
 
 def lessons(root: Path) -> dict[str, str]:
-    """Return number ("06", "P1") -> path below notebooks/ of every lesson and project, in order."""
+    """Return number ("06", "F1", "P1") -> path below notebooks/ of every lesson, foundation and project."""
     return {Path(name).name[:2]: name for name in _below_notebooks(root, LESSONS)}
 
 

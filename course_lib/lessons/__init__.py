@@ -24,6 +24,9 @@ A new lesson NN needs a notebook and a folder:
   `exercises.py`: `EXERCISES`, each with a solution, an input generator, and mistakes as edits of it with hints.
   Code that these files share (scenes, data, measurements) has its own modules, named after their contents.
 
+A foundation n needs `notebooks/foundations/Fn_title.ipynb` and `lessons/foundation_n/`, in the same form. The ids of
+its cells are "Fn-something".
+
 A project n needs `notebooks/projects/Pn_title.ipynb` and `lessons/project_n/`. Its `exercises.py` holds the stages, as
 above, and `project.py` holds `PROJECT` (see `kit/projects.py`). tests/notebooks/test_projects.py checks the parts. The
 model solution is in `notebooks/projects/solutions/`, and the rivals' results are in data/projects/.

@@ -97,7 +97,7 @@ def test_nothing_tells_that_a_cell_was_there(assignment):
     assert counts == list(range(1, len(counts) + 1))
     text = nbformat.writes(copy)
     assert "source_hidden" not in text
-    assert not re.search(r"_solution\b|-solution\b|[Ss]olution \d\d\.\d|model solution|solutions/", text)
+    assert not re.search(r"_solution\b|-solution\b|[Ss]olution [\dF]\d\.\d|model solution|solutions/", text)
     assert not re.search(r"\b(the|a) solution\b", text, re.I)
 
 

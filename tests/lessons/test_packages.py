@@ -7,7 +7,10 @@ import re
 
 import pytest
 
-from course_lib.paths import notebook_paths
+from course_lib.lessons.kit.exercises import package_name
+from course_lib.paths import foundation_paths, notebook_paths
+
+PATHS = [*notebook_paths(), *foundation_paths()]
 
 
 def code_of(path) -> str:
@@ -15,15 +18,15 @@ def code_of(path) -> str:
     return "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
 
 
-@pytest.mark.parametrize("path", notebook_paths(), ids=lambda path: path.name[:2])
+@pytest.mark.parametrize("path", PATHS, ids=lambda path: path.name[:2])
 def test_a_package_hands_on_what_its_notebook_asks_for(path):
-    name = f"lesson_{path.name[:2]}"
+    name = package_name(path.name[:2])
     package = importlib.import_module(f"course_lib.lessons.{name}")
     asked = re.findall(rf"(?<![.\w]){name}\.(\w+)", code_of(path))
     assert [one for one in {*asked, "PANELS"} if not hasattr(package, one)] == []
 
 
-@pytest.mark.parametrize("path", notebook_paths(), ids=lambda path: path.name[:2])
+@pytest.mark.parametrize("path", PATHS, ids=lambda path: path.name[:2])
 def test_what_a_notebook_imports_from_the_library_is_there(path):
     for node in ast.walk(ast.parse(code_of(path))):
         if isinstance(node, ast.ImportFrom) and node.module.startswith("course_lib"):

@@ -1,5 +1,5 @@
-"""The notebooks as the tests see them: every lesson notebooks/NN_title.ipynb and every project, so that a new one is
-covered at once."""
+"""The notebooks as the tests see them: every lesson notebooks/NN_title.ipynb, every foundation and every project, so
+that a new one is covered at once."""
 
 import ast
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from course_lib.paths import notebook_paths, project_paths
+from course_lib.paths import foundation_paths, notebook_paths, project_paths
 from tests.notebooks.driven_lab import require_chromium, served_lab
 
 
@@ -73,7 +73,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "lesson" in metafunc.fixturenames:
         # Projects have the rules of the lessons, but a shape of their own.
         projects = project_paths() if metafunc.module.__name__.endswith("test_rules") else []
-        lessons = [read(path) for path in [*notebook_paths(), *projects]]
+        lessons = [read(path) for path in [*notebook_paths(), *foundation_paths(), *projects]]
         metafunc.parametrize("lesson", lessons, ids=[lesson.path.stem for lesson in lessons])
     if "project" in metafunc.fixturenames:
         projects = [read(path) for path in project_paths()]

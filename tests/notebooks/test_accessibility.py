@@ -6,7 +6,7 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from course_lib.paths import notebook_paths, project_paths
+from course_lib.paths import notebook_paths, numbered_paths
 from tests.notebooks.driven_lab import SESSION_IS_IDLE, open_lesson, serious_findings
 
 LESSON = next(path.name for path in notebook_paths() if path.name.startswith("06"))
@@ -101,7 +101,7 @@ def test_nothing_serious_is_found_in_a_lesson_that_was_run_nor_in_the_dark_theme
 
 def test_nothing_serious_is_found_in_what_lessons_and_projects_store(browser):
     page = browser.new_page()
-    for path in [*notebook_paths(), *project_paths()]:
+    for path in numbered_paths().values():
         page.set_content(stored_page(path))
         assert serious_findings(page) == [], path.name
     page.close()

@@ -5,7 +5,7 @@ import re
 import statistics
 
 from course_lib.commands.saved_panels import WIDGET_VIEW
-from course_lib.paths import REPOSITORY, notebook_paths
+from course_lib.paths import REPOSITORY, foundation_paths, notebook_paths
 from tests.notebooks.conftest import read
 from tools.refresh import MAX_BYTES, METADATA
 
@@ -13,7 +13,7 @@ FORBIDDEN_WIDGETS = {"Output", "interact", "interactive", "interactive_output", 
 MAX_SCENE_BYTES, MAX_SCENES_BYTES = 1_300_000, 15_000_000
 OPT_OUT = re.compile("nbval.(ignore.output|skip|raises.exception)|validate.ignore.output|raises-exception", re.I)
 """By what nbval does not compare a cell's output, in a comment or as a tag."""
-LESSONS = [read(path) for path in notebook_paths()]
+LESSONS = [read(path) for path in [*notebook_paths(), *foundation_paths()]]
 SHOWN_TYPES = {"text/plain", "text/html", "text/markdown", "text/latex"}
 
 
@@ -68,11 +68,11 @@ def test_every_picture_has_alternative_text_which_is_told_out_of_sight(lesson):
 
 
 def test_the_first_and_the_last_cell_link_to_the_neighbours_and_to_the_series(lesson):
-    neighbours = sorted(lesson.path.parent.glob("[0-9P][0-9]_*.ipynb"))
+    neighbours = sorted(lesson.path.parent.glob("[0-9FP][0-9]_*.ipynb"))
     here = neighbours.index(lesson.path)
     wanted = {"README.md", *(path.name for path in neighbours[max(here - 1, 0) : here + 2] if path != lesson.path)}
     for cell in (lesson.cells[0], lesson.cells[-1]):
-        assert wanted <= set(re.findall(r"\]\(([^)]+)\)", cell.source)), cell.id
+        assert wanted <= {link.rsplit("/")[-1] for link in re.findall(r"\]\(([^)]+)\)", cell.source)}, cell.id
 
 
 def scene_sources(lesson) -> list[str]:

@@ -6,7 +6,7 @@ import pytest
 from PIL import Image
 
 from course_lib.lessons.kit.series_pictures import CHOSEN, MAX_BYTES, MAX_SIZE, write_pictures
-from course_lib.paths import REPOSITORY, notebook_paths
+from course_lib.paths import REPOSITORY, foundation_paths, notebook_paths, numbered_paths
 
 FOLDER = REPOSITORY / "notebooks"
 README, GLOSSARY = ((FOLDER / name).read_text(encoding="utf-8") for name in ("README.md", "GLOSSARY.md"))
@@ -15,15 +15,14 @@ ENTRIES = dict(re.findall(r"^### (.+)\n((?:.+\n?)+)", GLOSSARY, re.M))
 
 def minutes_of(number: str) -> int:
     """How many minutes a lesson says that it takes."""
-    (path,) = FOLDER.glob(f"{number}_*.ipynb")
-    return int(re.search(r"\*\*(\d+) minutes", path.read_text(encoding="utf-8")).group(1))
+    return int(re.search(r"\*\*(\d+) minutes", numbered_paths()[number].read_text(encoding="utf-8")).group(1))
 
 
 def row_of(path) -> str:
-    return next((line for line in README.splitlines() if f"]({path.name})" in line), "")
+    return next((line for line in README.splitlines() if f"]({path.relative_to(FOLDER).as_posix()})" in line), "")
 
 
-@pytest.mark.parametrize("path", notebook_paths(), ids=lambda path: path.name[:2])
+@pytest.mark.parametrize("path", [*notebook_paths(), *foundation_paths()], ids=lambda path: path.name[:2])
 def test_every_lesson_has_a_row_with_its_time_and_its_picture(path):
     number, row = path.name[:2], row_of(path)
     assert row.startswith(f"| [{number} · ")
@@ -60,10 +59,10 @@ def test_an_entry_is_short_named_as_its_anchor_and_names_a_lesson_that_exists(te
     assert len(ENTRIES) >= 50
     assert re.fullmatch(r"[a-z0-9 -]+", term)
     assert len(ENTRIES[term].split()) <= 60
-    named = {number for group in re.findall(r"Lessons? ([\d and to,]+)\.", ENTRIES[term]) for number in group.split()}
-    numbers = {word for word in named if word.isdigit()}
+    named = {number for group in re.findall(r"Lessons? ([\dF and to,]+)\.", ENTRIES[term]) for number in group.split()}
+    numbers = {word for word in named if re.fullmatch(r"[\dF]\d", word)}
     assert numbers
-    assert numbers <= {path.name[:2] for path in notebook_paths()}
+    assert numbers <= set(numbered_paths())
 
 
 def test_every_link_to_the_glossary_finds_its_term(lesson):

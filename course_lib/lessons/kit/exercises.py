@@ -26,6 +26,7 @@ from course_lib.lessons.kit.values import agree, agree_all
 
 # Random inputs per check. A case that one input in five has is missed in one of 200 checks only: 0.8^24 = 0.005.
 N_INPUTS = 24
+PACKAGES = {"lesson": "", "foundation": "F", "project": "P"}  # a package's kind -> the letter of its number
 MAX_SHOWN = 1000  # characters of a function's printed text; only the first call's text is shown
 
 
@@ -113,17 +114,22 @@ def find_exercise(number: str) -> Exercise:
 
 
 def lesson_numbers() -> list[str]:
-    """Return the numbers ("03") of the lessons with exercises and the names ("P1") of the projects with stages."""
-    paths = Path(__file__).parents[1].glob("*_*/exercises.py")
-    return sorted(path.parent.name.removeprefix("lesson_").replace("project_", "P") for path in paths)
+    """Return the numbers ("03") of the lessons with exercises, and the names of foundations ("F1") and projects."""
+    names = [path.parent.name for path in Path(__file__).parents[1].glob("*_*/exercises.py")]
+    return sorted(PACKAGES[kind] + number for kind, _, number in (name.partition("_") for name in names))
+
+
+def package_name(number: str) -> str:
+    """Return the folder's name of a lesson ("03": lesson_03), foundation ("F1": foundation_1) or project ("P1")."""
+    kind = next((kind for kind, letter in PACKAGES.items() if letter and number.startswith(letter)), "lesson")
+    return f"{kind}_{number.removeprefix(PACKAGES[kind])}"
 
 
 def lesson_exercises(lesson: str) -> tuple[Exercise, ...]:
-    """Return the exercises of lesson "03" or the stages of project "P1". Without a file of exercises, return ()."""
+    """Return the exercises of lesson "03" or foundation "F1", or the stages of "P1". Without a file of them, ()."""
     if lesson not in lesson_numbers():
         return ()
-    folder = f"project_{lesson[1:]}" if lesson.startswith("P") else f"lesson_{lesson}"
-    return tuple(importlib.import_module(f"course_lib.lessons.{folder}.exercises").EXERCISES)
+    return tuple(importlib.import_module(f"course_lib.lessons.{package_name(lesson)}.exercises").EXERCISES)
 
 
 def judge(exercise: Exercise, function: Callable, seed: int = 0, seconds: float = TIME_LIMIT) -> Verdict:

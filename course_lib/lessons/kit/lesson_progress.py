@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from course_lib.lessons.kit.student_record import RecordError, read_record, record_folder
-from course_lib.paths import notebook_paths, project_paths
+from course_lib.paths import foundation_paths, notebook_paths, numbered_paths, project_paths
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Progress:
 
 @dataclass(frozen=True)
 class Table:
-    """A table of all lessons or of all projects, whose exercises are their stages."""
+    """A table of all lessons, all foundations or all projects, whose exercises are their stages."""
 
     name: str
     headings: tuple[str, ...]
@@ -66,19 +66,21 @@ class Table:
         return counts
 
 
-def tables() -> tuple[Table, Table]:
-    """Return the progress in all lessons and in all projects."""
+def tables() -> tuple[Table, Table, Table]:
+    """Return the progress in all lessons, in all foundations and in all projects."""
     lessons = ("lesson", "checks right", "attempted", "predictions typed", "state", "not right yet")
+    foundations = ("foundation", *lessons[1:])
     projects = ("project", "stages right", "attempted", "state", "not right yet")
     return (
         Table("Lessons", lessons, tuple(map(progress_in, notebook_paths()))),
+        Table("Foundations", foundations, tuple(map(progress_in, foundation_paths()))),
         Table("Projects", projects, tuple(map(progress_in, project_paths()))),
     )
 
 
 def unknown_files() -> list[str]:
     """Return a sentence for each file in the folder of the records that belongs to no lesson."""
-    folder, ours = record_folder(), {path.name[:2] for path in [*notebook_paths(), *project_paths()]}
+    folder, ours = record_folder(), numbered_paths()
     found = sorted(folder.glob("*")) if folder is not None else []
     return [
         f"{path} belongs to no lesson of this course; it is not changed."

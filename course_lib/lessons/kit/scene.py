@@ -67,7 +67,7 @@ def show_scene(plotter: pyvista.Plotter, name: str, title: str, alt: str) -> Non
     sentence that says what the scene shows. Raises `SceneError` for an invalid name or an empty scene, and
     `FigureError` for an `alt` that is too short.
     """
-    if not re.fullmatch(r"(\d\d|P\d)_[a-z0-9_]+", name):
+    if not re.fullmatch(r"(\d\d|[FP]\d)_[a-z0-9_]+", name):
         raise SceneError(f"a scene's name must be the lesson's number and a word, such as '01_frustum'; got {name!r}")
     try:
         picture = Picture(small_picture(plotter), alt)

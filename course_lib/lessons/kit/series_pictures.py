@@ -2,7 +2,7 @@
 
     python -m course_lib.lessons.kit.series_pictures
 
-writes notebooks/pictures/NN.png for every lesson. Run it again when a lesson's picture has changed.
+writes notebooks/pictures/NN.png for every lesson and foundation. Run it again when a lesson's picture has changed.
 """
 
 import base64
@@ -15,7 +15,7 @@ from PIL import Image
 
 from course_lib.files import atomic_write
 from course_lib.lessons.kit.compression import small_png
-from course_lib.paths import REPOSITORY, notebook_paths
+from course_lib.paths import REPOSITORY, foundation_paths, notebook_paths
 
 # Lesson -> the cell whose picture we use. Of a lesson that is not listed, we use the first picture.
 CHOSEN = {
@@ -40,7 +40,7 @@ def stored_picture(path: Path, cell_id: str | None) -> Image.Image:
 def write_pictures(folder: Path) -> list[Path]:
     """Write NN.png of every lesson into `folder` and return the paths. Raises `ValueError`."""
     folder.mkdir(parents=True, exist_ok=True)
-    lessons = {path.name[:2]: path for path in notebook_paths()}
+    lessons = {path.name[:2]: path for path in [*notebook_paths(), *foundation_paths()]}
     for number, path in lessons.items():
         picture = stored_picture(path, CHOSEN.get(number))
         width = min(MAX_SIZE[0], MAX_SIZE[1] * picture.width // picture.height)

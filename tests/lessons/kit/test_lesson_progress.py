@@ -8,12 +8,12 @@ import pytest
 from course_lib.lessons.kit import lesson_progress
 from course_lib.lessons.kit.exercises import lesson_exercises
 from course_lib.lessons.kit.lesson_progress import Progress, progress_in, tables
-from course_lib.paths import notebook_paths, project_paths
+from course_lib.paths import notebook_paths, numbered_paths
 
 ASKED = Progress("06 · Likelihood", 2, ("06.1", "06.2", "06.3", "06.4"))
 
 
-@pytest.mark.parametrize("path", [*notebook_paths(), *project_paths()], ids=lambda path: path.name[:2])
+@pytest.mark.parametrize("path", numbered_paths().values(), ids=lambda path: path.name[:2])
 def test_the_exercises_counted_are_those_that_the_lesson_checks(path):
     number = path.name[:2]
     assert progress_in(path).exercises == tuple(exercise.number for exercise in lesson_exercises(number))
@@ -61,7 +61,7 @@ def test_the_rows_add_up(keep):
     keep("06", "rw")
     keep("07", "r")
     keep("P1", "r")
-    lessons, projects = tables()
+    lessons, _, projects = tables()
     total = sum(len(lesson_exercises(path.name[:2])) for path in notebook_paths())
     assert lessons.rows()[-1][:3] == ("together", f"2 of {total}", f"3 of {total}")
     assert lessons.rows()[6][1:] == ("1 of 4", "2 of 4", "0 of 3", "begun", "06.2")

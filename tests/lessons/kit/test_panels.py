@@ -7,10 +7,12 @@ import cv2
 import numpy as np
 import pytest
 
+from course_lib.lessons.kit.exercises import package_name
 from course_lib.lessons.kit.panel import Choice, Panel, Slider
-from course_lib.paths import notebook_paths
+from course_lib.paths import foundation_paths, notebook_paths
 
-LESSONS = [importlib.import_module(f"course_lib.lessons.lesson_{path.name[:2]}") for path in notebook_paths()]
+PATHS = [*notebook_paths(), *foundation_paths()]
+LESSONS = [importlib.import_module(f"course_lib.lessons.{package_name(path.name[:2])}") for path in PATHS]
 MAKERS = {title: maker for lesson in LESSONS for title, maker in lesson.PANELS.items()}
 
 
@@ -42,9 +44,7 @@ def is_picture(png: bytes) -> bool:
 
 
 def test_every_panel_in_a_notebook_is_registered_and_the_other_way_round():
-    assert {one for path in notebook_paths() for one in re.findall(r"\"Panel '([^']+)'", path.read_text())} == set(
-        MAKERS
-    )
+    assert {one for path in PATHS for one in re.findall(r"\"Panel '([^']+)'", path.read_text())} == set(MAKERS)
 
 
 def test_every_control_works_at_its_ends_and_changes_what_is_shown(panel):

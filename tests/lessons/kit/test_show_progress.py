@@ -11,7 +11,7 @@ from course_lib.lessons.kit.lesson_progress import Progress, Table, tables
 from course_lib.lessons.kit.predictions import Predictions
 from course_lib.lessons.kit.show_progress import as_page, as_text, update_page
 from course_lib.lessons.kit.student_record import RECORD
-from course_lib.paths import notebook_paths, project_paths
+from course_lib.paths import numbered_paths
 from tests.lessons.kit.conftest import right_06_1
 
 NOW = datetime.datetime(2026, 11, 23, 9, 5)
@@ -26,9 +26,9 @@ def test_the_columns_of_the_text_stand_below_their_headings(record):
 def test_the_page_is_a_table_with_headings_that_needs_nothing_else(keep):
     keep("06", "rr")
     page = as_page(tables(), NOW)
-    assert page.count("<caption>") == 2
-    assert page.count('<th scope="col">') == 6 + 5
-    assert page.count('<th scope="row">') == len(notebook_paths()) + len(project_paths()) + 2
+    assert page.count("<caption>") == 3
+    assert page.count('<th scope="col">') == 6 + 6 + 5
+    assert page.count('<th scope="row">') == len(numbered_paths()) + 3
     assert not re.search(r'<th>|<script|<img|<iframe|src=|href="(?!data:,")', page)
     assert '<td>2 of 4<span class="bar" aria-hidden="true"><span style="width: 50%">' in page
     for words in ('<html lang="en">', "prefers-color-scheme: dark", "2026-11-23 09:05", "<td>begun</td>"):
