@@ -98,8 +98,6 @@ np.cos(angle) * np.eye(3) + np.sin(angle) * np.cross(np.eye(3), axis / np.linalg
     }, mistakes="""
         range(50) => range(1)
         One step is not enough. Average again from the place where you arrived, until nothing moves.
-        ... => return rotation_mean(rotations, weights)
-        That is the rotation nearest to the mean matrix. Close, but there the weighted Logs do not cancel.
         ... => return mean_of_angles(rotations, weights)
         ... => return mean_of_angles(rotations, np.ones(len(weights)))
         You average roll, pitch and yaw. Look at your answer for a camera that looks straight down.
@@ -118,7 +116,9 @@ rotation_exp(weights @ rotation_log(M.T @ rotations) / weights.sum()) @ M
         The turn from M to R is M^T R. Yours multiplies M and R.
         ... => return rotations[np.argmax(weights)]
         You return the rotation with the greatest weight. All of them count.
-    """),
+    """, functions={
+        rotation_mean: "That is the rotation nearest to the mean matrix. There the weighted Logs do not cancel.",
+    }),
     Exercise("F2.3", screw_end, a_screw, "challenge", cases={
         "no turn": lambda rng: (rng.uniform(0.5, 2, 3), np.zeros(3)),
         "a turn about the direction of travel": lambda rng: (np.array([1.5, 0, 0]), np.array([0.7, 0, 0])),

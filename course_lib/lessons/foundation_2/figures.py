@@ -65,8 +65,7 @@ def turn_figure(axis: np.ndarray, vector: np.ndarray, angle: float) -> Figure:
     seen.set(title="Seen from the tip of the axis", xlabel="along v⊥ [-]", ylabel="along k × v [-]")
     seen.set(xlim=(-1.15, 1.15), ylim=(-1.0, 1.15))
     alt = (
-        "A vector turns about an axis. Its part along the axis stays. Its part across the axis runs along a circle: "
-        "cosine of the angle times itself, plus sine of the angle times k cross v."
+        "A vector turns about an axis. Its part along the axis stays, and its part across the axis runs along a circle."
     )
     return described(figure, alt)
 
@@ -84,16 +83,14 @@ def tangent_figure(sigma: float) -> Figure:
         flat.plot(np.linspace(1, np.cos(omega), 2), [omega, np.sin(omega)], ":", color="0.3")
         flat.text(1.06, omega, f"ω = {omega}", color=BLUE, va="center")
         flat.text(0.9 * np.cos(omega), 0.9 * np.sin(omega), "Exp(ω)", color=VERMILION, ha="right", va="center")
-    flat.plot(1, 0, "D", color=figures.BLACK)
-    flat.text(0.93, 0, "no turn: I", ha="right", va="center", fontsize=8)
-    flat.plot(-1, 0, "x", color=figures.BLACK, markersize=9, markeredgewidth=2)
-    flat.text(-0.92, 0, "half a turn: ω = ±π", va="center", fontsize=8)
+    flat.plot([1, -1], [0, 0], "X", color=figures.BLACK, markersize=8, linestyle="none")
+    flat.text(0.9, 0, "no turn", ha="right", va="center", fontsize=8)
+    flat.text(-0.9, 0, "half a turn: ω = ±π", va="center", fontsize=8)
     flat.set(title="Turns in the plane are a circle", xlabel="cosine [-]", ylabel="sine [-]")
     flat.set(xlim=(-1.3, 2.4), ylim=(-1.65, 1.65))
     u, v = np.mgrid[0 : 2 * np.pi : 40j, 0 : np.pi : 20j]
-    space.plot_surface(
-        np.cos(u) * np.sin(v), np.sin(u) * np.sin(v), np.cos(v), color="0.85", alpha=0.35, linewidth=0
-    )
+    ball = np.cos(u) * np.sin(v), np.sin(u) * np.sin(v), np.cos(v)
+    space.plot_surface(*ball, color="0.85", alpha=0.35, linewidth=0)
     base = rotation_exp(np.array([0.0, 0.35, -0.45]))  # its first axis is the point where the plane touches
     corners = 0.75 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
     space.plot(*(base[:, :1] + base[:, 1:] @ corners.T), color=BLUE, linewidth=1.2)
@@ -107,8 +104,7 @@ def tangent_figure(sigma: float) -> Figure:
     space.view_init(elev=-8, azim=-58)
     space.legend(loc="lower center", bbox_to_anchor=(0.5, -0.12), fontsize=8)
     alt = (
-        "Left, a sphere with a plane that touches it: a cloud of dots on the plane, and the same cloud rolled onto the "
-        "sphere. Right, a circle with its tangent line: lengths on the line become angles on the circle."
+        "A plane touches a sphere, with dots on both. A line touches a circle: its lengths become angles on the circle."
     )
     return described(figure, alt)
 
@@ -128,20 +124,15 @@ def lever_figure(v: np.ndarray, omega: float, arm: float) -> Figure:
     paths.set(xlim=(-0.2, 2.6), ylim=(-0.3, 2.0))
     paths.legend(loc="upper left")
     turn = np.deg2rad(10)
-    for angle, colour, line in ((0.0, BLUE, "-"), (turn, VERMILION, "--")):
-        hand = arm * np.array([np.cos(angle), np.sin(angle)])
-        lever.plot([0, hand[0]], [0, hand[1]], color=colour, linestyle=line, linewidth=2)
-        lever.plot(*hand, "s", color=colour, markersize=9)
+    for angle, colour, line in ((0.0, BLUE, "-s"), (turn, VERMILION, "--s")):
+        lever.plot([0, arm * np.cos(angle)], [0, arm * np.sin(angle)], line, color=colour, lw=2, ms=9, markevery=[1])
     lever.plot(0, 0, "o", color=figures.BLACK, markersize=10)
     lever.text(0, -0.22, "camera: turns", ha="center")
     lever.text(arm, -0.22, "hand: turns and moves", ha="center")
     lever.annotate("", arm * np.array([np.cos(turn), np.sin(turn)]), (arm, 0), arrowprops={"arrowstyle": "->"})
     lever.set(title="A turn here is a turn and a move there", xlabel="forward [m]", ylabel="left [m]", aspect="equal")
     lever.set(xlim=(-0.7, 2.9), ylim=(-0.5, 0.9))
-    alt = (
-        "From above: a step goes 2 m straight and then turns, a screw with the same numbers runs along an arc. "
-        "Right: when the camera turns, a hand 2 m before it turns and moves sideways."
-    )
+    alt = "From above: a straight step and an arc of the same numbers; a hand that swings when the camera turns."
     return described(figure, alt)
 
 
@@ -154,8 +145,7 @@ def mean_figure(pitch_deg: np.ndarray, errors_deg: np.ndarray) -> Figure:
     )
     axes.set_yticks([0.5, 1, 2, 5, 10, 20], ["0.5", "1", "2", "5", "10", "20"])
     alt = (
-        "Error of three means over pitch. The mean of rotations stays at half a degree. Both means of angles rise "
-        "steeply from 75 degrees on."
+        "Error over pitch: the mean of rotations stays at half a degree, both means of angles rise from 75 degrees on."
     )
     return described(figure, alt)
 
@@ -198,12 +188,13 @@ def cloud_panel() -> Panel:
             pair[1].set_data(*turn[:, None])
         errors = np.rad2deg(rotation_angle(off[len(states) :]))
         said = ", ".join(f"{name} {error:.1f}" for name, error in zip(MEANS, errors, strict=True))
-        summary = f"spread of roll {np.rad2deg(states[:, 3]).std():.0f}, of yaw {np.rad2deg(states[:, 5]).std():.0f} "
-        summary += f"degrees; about the body's own axes {turns[: len(states)].std():.0f} degrees\n"
-        summary += f"error of the mean of ... [degrees]: {said}"
+        roll_spread, yaw_spread = np.rad2deg(states[:, [3, 5]].std(axis=0))
+        summary = (
+            f"spread [degrees]: roll {roll_spread:.0f}, yaw {yaw_spread:.0f}, about the body's own axes "
+            f"{turns[: len(states)].std():.0f}\nerror [degrees] of the mean of: {said}"
+        )
         alt = (
-            f"A cloud about pitch {pitch:.0f} and yaw {yaw:.0f} degrees, as roll over yaw and in the tangent space, "
-            f"with three means. {' '.join(summary.split())}"
+            f"A cloud about pitch {pitch:.0f} degrees, as numbers and in the tangent space. {' '.join(summary.split())}"
         )
         return Drawing(live.png(), alt, summary)
 
