@@ -6,11 +6,12 @@ Directions are unit vectors `(n, 3)`, x1 and x2, each in the axes of its own cam
 
 from collections.abc import Callable
 
+import cv2
 import numpy as np
 
 from course_lib.geometry import rotation_angle, rotation_exp
 from course_lib.lessons.kit.panorama_features import scene
-from course_lib.spherical_stereo.matching.epipolar import best_pairs, epipolar_pairs
+from course_lib.spherical_stereo.matching.epipolar import RATIO
 from course_lib.spherical_stereo.panorama import direction_from_angles
 
 PIXEL = 2 * np.pi / 1280  # radians of one pixel of the room's panoramas
@@ -35,10 +36,14 @@ def random_views(rng, n: int, R: np.ndarray, c: np.ndarray, sigma: float, wrong:
 
 def room_views(name: str = "09_a") -> tuple[np.ndarray, np.ndarray]:
     """Return directions x1, x2 of the room's AKAZE matches at one place, found by look alone, without any geometry."""
-    one = scene(name)
-    pairs = best_pairs(epipolar_pairs(one.upper.features, one.lower.features, tolerance=1.57))
-    angles = [np.array(side.features.angles()) for side in (one.upper, one.lower)]
-    return direction_from_angles(*angles[0][:, pairs.upper]), direction_from_angles(*angles[1][:, pairs.lower])
+    sides = [side.features for side in scene(name)[:2]]
+    matcher = cv2.BFMatcher(cv2.NORM_HAMMING)
+    forth = matcher.knnMatch(*(side.descriptors for side in sides), k=2)
+    back = {(one.trainIdx, one.queryIdx) for one in matcher.match(*(side.descriptors for side in sides[::-1]))}
+    clear = [best for best, second in forth if best.distance < RATIO * second.distance]
+    pairs = np.array([(one.queryIdx, one.trainIdx) for one in clear if (one.queryIdx, one.trainIdx) in back]).T
+    angles = [np.array(side.angles())[:, chosen] for side, chosen in zip(sides, pairs, strict=True)]
+    return direction_from_angles(*angles[0]), direction_from_angles(*angles[1])
 
 
 def four_motions(E: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
