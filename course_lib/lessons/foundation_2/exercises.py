@@ -115,7 +115,7 @@ rotation_exp(weights @ rotation_log(M.T @ rotations) / weights.sum()) @ M
         rotation_log(M.T @ rotations) => rotation_log(M @ rotations)
         The turn from M to R is M^T R. Yours multiplies M and R.
         ... => return rotations[np.argmax(weights)]
-        You return the rotation with the greatest weight. All of them count.
+        That is the rotation with the greatest weight. All of them count.
     """, functions={
         rotation_mean: "That is the rotation nearest to the mean matrix. There the weighted Logs do not cancel.",
     }),

@@ -82,7 +82,7 @@ EXERCISES = [
         c / np.linalg.norm(c) => c / np.linalg.norm(c[:2])
         The baseline may have a part along z. Divide by the length in space.
         np.array([forth, -R.T @ forth]) => np.array([forth, forth])
-        You return the same direction twice. Stand at the second camera: where is the first one?
+        Both of your directions are the same. Stand at the second camera: where is the first one?
     """),
     Exercise("F4.2", distance_along, sights, cases={
         "an upright rig": lambda rng: sights(rng, motion=upright(rng)),
@@ -110,7 +110,7 @@ EXERCISES = [
         x1 @ c, y @ c => x1 @ c / np.linalg.norm(c), y @ c / np.linalg.norm(c)
         Your baseline has length one. The distances are in metres, because c is.
         np.nan => 0.0
-        Where there is no point, return NaN. Zero would be a point in the camera.
+        Where there is no point, the answer is NaN. Zero would be a point in the camera.
     """, functions={
         lambda x1, x2, R, c: distances(x1, x2, R.T, -R.T @ c)[0]:
             "You read R and c the other way round. R turns from the second to the first, and c is in the first frame.",
