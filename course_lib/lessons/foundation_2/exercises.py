@@ -21,6 +21,13 @@ def a_door(rng: np.random.Generator, hinge=None, length=None, angle=None) -> tup
     return rng.uniform(-2, 2, (5, 3)), hinge, axis, angle
 
 
+def rodrigues(k, angle, sine=None, third=None, first=1, square=lambda K: K @ K):
+    """Return, for mistakes, eq. (F2.1) with other factors of its three terms."""
+    K = np.cross(np.eye(3), k)
+    sine, third = np.sin(angle) if sine is None else sine, 1 - np.cos(angle) if third is None else third
+    return first * np.eye(3) + sine * K + third * square(K)
+
+
 def mean_rotation(rotations, weights):
     """Mean M (3, 3) of rotations (n, 3, 3): the weighted sum of Log(M^T R_i) is zero; weights (n,) are positive."""
     # Average in the tangent space of a guess, go there, and repeat.
@@ -36,11 +43,11 @@ def a_cloud(rng: np.random.Generator, middle=None, spread: float = 0.35, n: int 
     return middle @ rotation_exp(spread * rng.standard_normal((n, 3))), rng.uniform(0.2, 3.0, n)
 
 
-def mean_of_angles(rotations, weights):
+def mean_of_angles(rotations, weights, mean=circular_mean):
     """Return, for mistakes, the rotation of the means of roll, pitch and yaw."""
     matrices = np.zeros((len(rotations), 4, 4)) + np.eye(4)
     matrices[:, :3, :3] = rotations
-    return pose_matrix(np.r_[0, 0, 0, circular_mean(state_from_matrix(matrices)[:, 3:], weights)])[:3, :3]
+    return pose_matrix(np.r_[0, 0, 0, mean(state_from_matrix(matrices)[:, 3:], weights)])[:3, :3]
 
 
 def screw_end(v, omega):
@@ -65,7 +72,8 @@ EXERCISES = [
         "a door that stays shut": lambda rng: a_door(rng, angle=0.0),
     }, mistakes="""
         angle * axis / np.linalg.norm(axis) => angle * axis
-        A rotation vector's length is the angle. Yours is right only for an axis of length one.
+        rotation_exp(angle * axis / np.linalg.norm(axis)) => rodrigues(axis, angle)
+        Yours is right only for an axis of length one. The angle alone says how far to turn.
         hinge + (points - hinge) @ R.T => points @ R.T
         You turn about a line through the origin. Which point of a door does not move?
         hinge + (points => (points
@@ -81,14 +89,19 @@ EXERCISES = [
         You turn about the vertical, whatever the axis is.
         rotation_exp(angle * axis / np.linalg.norm(axis)) => rotation_exp(axis / np.linalg.norm(axis))
         You turn by one radian about the axis. Where does the angle come in?
-        rotation_exp(angle * axis / np.linalg.norm(axis)) => \
-np.eye(3) - angle * np.cross(axis / np.linalg.norm(axis), np.eye(3))
-        rotation_exp(angle * axis / np.linalg.norm(axis)) => \
-np.eye(3) + angle * np.cross(np.eye(3), axis / np.linalg.norm(axis))
+        rotation_exp(angle * axis / np.linalg.norm(axis)) => rodrigues(axis / np.linalg.norm(axis), angle, angle, 0)
         You take the first two terms of the series alone. Then the points leave their circle: use the whole of Exp.
+        rotation_exp(angle * axis / np.linalg.norm(axis)) => rodrigues(axis / np.linalg.norm(axis), angle, third=0)
+        rotation_exp(angle * axis / np.linalg.norm(axis)) => rodrigues(axis / np.linalg.norm(axis), angle, first=0)
         rotation_exp(angle * axis / np.linalg.norm(axis)) => \
-np.cos(angle) * np.eye(3) + np.sin(angle) * np.cross(np.eye(3), axis / np.linalg.norm(axis))
-        You lose the part along the axis, which should stay. Rodrigues' formula has three terms.
+rodrigues(axis / np.linalg.norm(axis), angle, third=0) + (np.cos(angle) - 1) * np.eye(3)
+        One of Rodrigues' three terms is missing. What lies along the axis stays, the rest follows cosine and sine.
+        rotation_exp(angle * axis / np.linalg.norm(axis)) => \
+rodrigues(axis / np.linalg.norm(axis), angle, third=np.cos(angle))
+        At an angle of zero R must be I. Look at the factor of K^2.
+        rotation_exp(angle * axis / np.linalg.norm(axis)) => \
+rodrigues(axis / np.linalg.norm(axis), angle, square=np.square)
+        `K**2` squares every entry. The matrix times itself is `K @ K`.
     """),
     Exercise("F2.2", mean_rotation, a_cloud, tolerance=1e-4, cases={
         "about half a turn": lambda rng: a_cloud(rng, rotation_exp(np.array([0.0, 0.0, np.pi]))),
@@ -97,17 +110,22 @@ np.cos(angle) * np.eye(3) + np.sin(angle) * np.cross(np.eye(3), axis / np.linalg
         "equal weights": lambda rng: (a_cloud(rng)[0], np.full(6, 0.5)),
     }, mistakes="""
         range(50) => range(1)
-        One step is not enough. Average again from the place where you arrived, until nothing moves.
+        range(50) => range(2)
+        A step or two are not enough. Average again from the place where you arrived, until nothing moves.
         ... => return mean_of_angles(rotations, weights)
         ... => return mean_of_angles(rotations, np.ones(len(weights)))
+        ... => return mean_of_angles(rotations, weights, lambda a, w: w @ a / w.sum())
         You average roll, pitch and yaw. Look at your answer for a camera that looks straight down.
         ... => return rotation_exp(weights @ rotation_log(rotations) / weights.sum())
+        ... => return rotation_exp(rotation_log(rotations).mean(axis=0))
         Your Log counts from no turn at all. Half a turn away from there it has its seam: count from inside the cloud.
         ... => return np.tensordot(weights, rotations, 1) / weights.sum()
         A mean of matrices is no rotation, because it shrinks. Average rotation vectors.
         weights @ rotation_log(M.T @ rotations) / weights.sum() => rotation_log(M.T @ rotations).mean(axis=0)
+        ... => return rotation_mean(rotations)
         You do not use the weights.
         / weights.sum() =>
+        / weights.sum() => / len(weights)
         The weights do not sum to one, so your steps are too long.
         M @ rotation_exp(weights @ rotation_log(M.T @ rotations) / weights.sum()) => \
 rotation_exp(weights @ rotation_log(M.T @ rotations) / weights.sum()) @ M
@@ -115,7 +133,8 @@ rotation_exp(weights @ rotation_log(M.T @ rotations) / weights.sum()) @ M
         rotation_log(M.T @ rotations) => rotation_log(M @ rotations)
         The turn from M to R is M^T R. Yours multiplies M and R.
         ... => return rotations[np.argmax(weights)]
-        That is the rotation with the greatest weight. All of them count.
+        ... => return rotations[0]
+        That is one of the given rotations. All of them count.
     """, functions={
         rotation_mean: "That is the rotation nearest to the mean matrix. There the weighted Logs do not cancel.",
     }),
@@ -132,6 +151,9 @@ rotation_exp(weights @ rotation_log(M.T @ rotations) / weights.sum()) @ M
         That points the right way if the path is flat, but a chord is shorter than its arc.
         ... => return rotation_exp(omega / 2) @ v * np.sinc(np.linalg.norm(omega) / 2 / np.pi)
         That is right for a flat path alone. If v has a part along omega, this part does not bend.
+        ... => return (v + rotation_exp(omega) @ v) / 2
+        ... => return np.mean([rotation_exp(s * omega) @ v for s in np.linspace(0, 0.9, 10)], axis=0)
+        You add up a few directions. On the way there is one for every moment: integrate.
         ... => return v + np.cross(omega, v) / 2
         The series does not end after its second term. Integrate cosine and sine instead.
         / theta**2 * once => / theta * once and also / theta**3 * twice => / theta**2 * twice

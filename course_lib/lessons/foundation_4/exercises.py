@@ -3,7 +3,7 @@
 import numpy as np
 
 from course_lib.geometry import rotation_exp
-from course_lib.lessons.foundation_4.two_views import distances, random_directions
+from course_lib.lessons.foundation_4.two_views import random_directions
 from course_lib.lessons.kit.exercises import Exercise
 
 
@@ -76,6 +76,7 @@ EXERCISES = [
         np.array([forth, -R.T @ forth]) => np.array([-R.T @ forth, forth])
         The first direction belongs to the first panorama. Here c is the second camera's place in the first frame.
         np.array([forth, -R.T @ forth]) => np.array([R.T @ forth, -R.T @ forth])
+        np.array([forth, -R.T @ forth]) => np.array([R @ forth, -forth])
         c already counts in the first camera's axes. Turn nothing there.
         np.array([forth, -R.T @ forth]) => np.array([-forth, R.T @ forth])
         Both directions are opposite to the right ones. Does c lead to the second camera, or away from it?
@@ -110,11 +111,14 @@ EXERCISES = [
         x1 @ c, y @ c => x1 @ c / np.linalg.norm(c), y @ c / np.linalg.norm(c)
         Your baseline has length one. The distances are in metres, because c is.
         np.nan => 0.0
-        Where there is no point, the answer is NaN. Zero would be a point in the camera.
-    """, functions={
-        lambda x1, x2, R, c: distances(x1, x2, R.T, -R.T @ c)[0]:
-            "You read R and c the other way round. R turns from the second to the first, and c is in the first frame.",
-    }),
+        np.nan => np.inf
+        Where there is no point, the answer is NaN, and no number.
+        ... => return distance_along(x1, x2, R.T, -R.T @ c)
+        You read R and c the other way round. R turns from the second to the first, and c is in the first frame.
+        ... => return np.linalg.norm(c) / np.linalg.norm(np.cross(x1, x2 @ R.T), axis=1)
+        ... => return np.linalg.norm(c) / np.arccos(np.sum(x1 * (x2 @ R.T), axis=1))
+        Baseline over parallax holds far away and beside the rig. Which angle lies opposite to your distance?
+    """),
     Exercise("F4.3", distance_sigma, lambda rng: (*in_front(rng), rng.uniform(0.001, 0.01)), "challenge", cases={
         "an upright rig": lambda rng: (*in_front(rng, motion=upright(rng)), 0.005),
         "exact directions": lambda rng: (*in_front(rng), 0.0),
@@ -133,7 +137,8 @@ EXERCISES = [
         The crossing is oblique. Divide by the sine of the parallax.
         sigma / sine => sigma / sine**2
         You divide by the sine of the parallax once too often: d1 and d2 hold it already.
-        ... => return sigma * np.sqrt(2) * distances(x1, x2, R, c)[0] ** 2 / np.linalg.norm(c)
+        ... => return sigma * distance_along(x1, x2, R, c) * distance_along(x2, x1, R.T, -R.T @ c) / np.linalg.norm(c)
+        ... => return sigma * np.sqrt(2) * distance_along(x1, x2, R, c) ** 2 / np.linalg.norm(c)
         That is the rule for far points beside the rig, square over baseline. Here the rays may lie anywhere.
         x2 @ R.T => x2
         Your rays count in two frames. Turn the second ray into the first camera's axes.

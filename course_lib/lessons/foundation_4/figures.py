@@ -101,10 +101,10 @@ CONTROLS = [
 
 
 def on_panorama(directions: np.ndarray) -> np.ndarray:
-    """Return azimuth and elevation [degrees] `(2, n)` of vectors `(n, 3)`, with NaN where a line meets the seam."""
+    """Return azimuth and elevation [degrees] `(2, n)` of vectors `(n, 3)`, with NaN at the seam and at a pole."""
     x, y, z = directions.T
     angles = np.rad2deg([np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))])
-    jumps = np.flatnonzero(np.abs(np.diff(angles[0])) > 180) + 1
+    jumps = np.flatnonzero(np.abs(np.diff(angles[0])) > 90) + 1
     return np.insert(angles, jumps, np.nan, axis=1)
 
 
@@ -127,7 +127,7 @@ def views_panel() -> Panel:
     ]
     first.legend(handles=others[:1], loc="lower left", fontsize=8)
     live = LiveFigure(figure, [*(line for lines in moving for line in lines), *others])
-    share = np.linspace(0, 1, 121)[:, None]  # 0: at the other camera, 1: infinitely far away
+    share = np.linspace(0.001, 1, 121)[:, None]  # 0: at the other camera, 1: infinitely far away
 
     def draw(forward, left, up, yaw, pitch, roll) -> Drawing:
         c = np.array([forward, left, up])
