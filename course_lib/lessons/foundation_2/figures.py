@@ -102,7 +102,7 @@ def tangent_figure(sigma: float) -> Figure:
     space.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-1, 1))
     space.set_box_aspect((1, 1, 1), zoom=1.15)
     space.view_init(elev=7, azim=-52)
-    space.legend(loc="lower center", bbox_to_anchor=(0.5, -0.12), fontsize=8)
+    space.legend(loc="upper left", bbox_to_anchor=(-0.15, 1.0), fontsize=8)
     alt = (
         "A plane touches a sphere, with dots on both. A line touches a circle: its lengths become angles on the circle."
     )
