@@ -14,7 +14,7 @@ from course_lib.classroom.grading import grade_folder
 from course_lib.classroom.handout import canary_of
 from course_lib.classroom.judge import Graded, Judged
 from course_lib.classroom.pages import feedback_name, write_results
-from course_lib.classroom.results import Entry, what_counts
+from course_lib.classroom.results import Entry, table_text, what_counts
 from course_lib.classroom.sandbox import Limits, SandboxError
 from course_lib.classroom.submissions import Submission, read_roster
 from course_lib.cli import main
@@ -225,7 +225,7 @@ def test_results_never_lie_among_the_submissions(tmp_path, capsys):
 
 @pytest.mark.parametrize("cell", ["=1+1", "+1", "-1", "@x", "\t=1", " =1", "\uff1d1", "\ufe661", "\uff0b1"])
 def test_no_cell_is_a_formula_and_every_text_is_quoted(cell):
-    text = grading.table_text([[cell, 'a;b,"c"']])
+    text = table_text([[cell, 'a;b,"c"']])
     assert text.startswith("\ufeff\"'")
     assert next(csv.reader(io.StringIO(text[1:]))) == [f"'{cell}", 'a;b,"c"']
 
