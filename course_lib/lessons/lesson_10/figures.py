@@ -9,7 +9,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
-from course_lib.beyond.lost_and_found.adaptive_count import kld_count
+from course_lib.lessons.lesson_10.adaptive_count import kld_count
 from course_lib.beyond.lost_and_found.global_search import PoseCandidates
 from course_lib.lessons.kit.display import described
 from course_lib.lessons.lesson_10.hotel import ALIKE, FURNITURE, WALLS, Recording, leaving_101

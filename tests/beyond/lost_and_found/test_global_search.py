@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from course_lib.beyond.lost_and_found.adaptive_count import kld_count, occupied_bins
+from course_lib.lessons.lesson_10.adaptive_count import kld_count, occupied_bins
 from course_lib.beyond.lost_and_found.free_space import FreeSpace
 from course_lib.beyond.lost_and_found.global_search import GlobalSearch, upright_poses
 from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
