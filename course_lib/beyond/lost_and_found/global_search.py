@@ -15,6 +15,7 @@ import numpy as np
 
 from course_lib.beyond.being_lost import REFINED_LOST, agreement
 from course_lib.beyond.lost_and_found.free_space import FreeSpace
+from course_lib.beyond.lost_and_found.image_gravity import UNKNOWN_TILT_SIGMA, down_from_image, is_upright
 from course_lib.beyond.lost_and_found.stored_views import StoredViews, look_at
 from course_lib.beyond.six_dof.poses import distinct, lengths, local
 from course_lib.beyond.six_dof.prediction import MAX_SPREAD, MotionPrediction
@@ -26,14 +27,15 @@ from course_lib.rendering.sensor import subsample_depth
 # All chosen on development recordings (the kitchen, the rooms of a HoloLens, the shipped corridor, corridor and room
 # seeds from 10,001 on).
 COARSEST = (20, 15)  # pixels of the image that is compared with all stored views
-WIDE_ALPHA = 0.3  # metres, of eq. (8) for them: the nearest of thousands is still decimetres off
+WIDE_ALPHA = 0.3  # metres, as in eq. (8), for them: the nearest of thousands is still decimetres off
 TILT_SIGMA = np.deg2rad(1.0)  # of the measured gravity
 SURE_TILT = np.deg2rad(4.0)  # with a larger sigma, tilts about the given one are tried too
+UPRIGHT = np.array([0.0, 1.0, 0.0])  # down in the optical frame of a camera that is held upright
 APART = np.array([0.25, np.deg2rad(10.0)])  # metres, radians: nearer places are one start
 DISTINCT = np.array([0.05, np.deg2rad(3.0)])  # nearer refined poses are one
 ELSEWHERE = np.array([0.3, np.deg2rad(15.0)])  # poses farther apart are two places
 LOOKED_AT = 2_000  # of the best stored views, from which the starts are taken
-STARTS = (200, 100, 60, 40, 25, 15)  # how many starts each step on the coarse image takes along
+STARTS = (150, 80, 50, 30, 20, 12)  # how many starts each step on the coarse image takes along
 START_SCALES = (0.4, 0.3, 0.25, 0.2, 0.15, 0.1)
 FINISH_SCALES = (0.1, 0.05, 0.05)  # on the middle image
 FOLLOWERS = 16  # particles of each candidate that is followed
@@ -42,6 +44,7 @@ FOLLOWERS_KEPT = (6, 4, 2)
 MAX_CANDIDATES = 12
 MEMORY = 0.4  # share of a new frame in a candidate's evidence
 FRAMES_TO_BELIEVE = 3  # that a candidate must have explained
+FRAMES_EXCLUDED = 5  # in which a place that was followed and dropped is not taken again
 CLEAR_GAP = 0.08  # of evidence, between the best candidate and the next elsewhere
 
 
@@ -68,11 +71,13 @@ class _Followed(MotionPrediction):
     def __init__(self, pose: np.ndarray, value: float) -> None:
         super().__init__(pose)
         self.evidence, self.frames = value, 0
+        self.best, self.since_dropped = value, 0
 
     def saw(self, pose: np.ndarray, value: float) -> None:
         self.found(pose)
         self.evidence = (1 - MEMORY) * self.evidence + MEMORY * value
         self.frames += 1
+        self.best = max(self.best, value)
 
     def reaches(self, poses: np.ndarray) -> np.ndarray:
         """Return whether the camera can have moved from here to poses `(N, 4, 4)` since the last frame."""
@@ -87,31 +92,33 @@ class GlobalSearch:
         self._coarse, self._middle, _ = pyramid(renderer)
         self.views = StoredViews(FreeSpace(renderer.scene_map, seen_from), renderer.scene_map.origin)
         self.rng = np.random.default_rng(seed)
+        self._map_is_upright = is_upright(renderer.scene_map)
         self._followed: list[_Followed] = []
+        self._dropped: list[_Followed] = []
 
     def forget(self) -> None:
         """Start anew, without candidates."""
-        self._followed = []
+        self._followed, self._dropped = [], []
 
     def step(
         self,
         depth: np.ndarray,
-        gravity: np.ndarray,
-        tilt_sigma: float = TILT_SIGMA,
+        gravity: np.ndarray | None = None,
+        *,
         suggested: np.ndarray | None = None,
+        assumed: np.ndarray = UPRIGHT,
     ) -> PoseCandidates:
         """Return the candidates after a depth image `(H, W)` in metres.
 
-        gravity: `(3,)` down, in the camera's optical frame, known to within `tilt_sigma` radians. suggested: a state
-        `(6,)` where the camera may be; it is judged like every other candidate.
+        gravity: `(3,)` down, in the camera's optical frame, as an accelerometer measures it to within `TILT_SIGMA`. If
+        you leave it out, the image tells it (image_gravity.py), if it does not differ much from `assumed` `(3,)`.
+        suggested: a state `(6,)` where the camera may be; it is judged like every other candidate.
         """
-        gravity = np.asarray(gravity, dtype=np.float64)
-        if gravity.shape != (3,) or not np.isfinite(gravity).all() or not gravity.any():
-            raise ValueError(f"gravity must be three finite numbers, not all zero; got {gravity}")
+        down, tilt_sigma = self._down(depth, gravity, assumed)
         levels = (self._coarse, self._middle)
         for level in levels:
             level.measure(depth)
-        starts, compared = self._starts(depth, gravity, tilt_sigma)
+        starts, compared = self._starts(depth, down, tilt_sigma)
         new = self._refined(starts)
         if suggested is not None:
             new = np.concatenate([new, optical_pose(suggested)[None]])
@@ -125,14 +132,25 @@ class GlobalSearch:
         ]
         return PoseCandidates(_status(candidates), candidates, compared, sum(level.renders for level in levels))
 
-    def _starts(self, depth: np.ndarray, gravity: np.ndarray, tilt_sigma: float) -> tuple[np.ndarray, int]:
+    def _down(
+        self, depth: np.ndarray, gravity: np.ndarray | None, assumed: np.ndarray
+    ) -> tuple[np.ndarray, float]:
+        """Return down `(3,)`, a unit vector in the optical frame, and its sigma in radians."""
+        if gravity is None and self._map_is_upright:
+            return down_from_image(depth, self.renderer.camera, assumed)
+        given = np.asarray(assumed if gravity is None else gravity, dtype=np.float64)
+        if given.shape != (3,) or not np.isfinite(given).all() or not given.any():
+            raise ValueError(f"gravity must be three finite numbers, not all zero; got {given}")
+        return given / np.linalg.norm(given), UNKNOWN_TILT_SIGMA if gravity is None else TILT_SIGMA
+
+    def _starts(self, depth: np.ndarray, down: np.ndarray, tilt_sigma: float) -> tuple[np.ndarray, int]:
         """Return the poses `(N, 4, 4)` whose stored views agree best with the image, and how many were compared."""
         camera = self.renderer.camera
         coarsest = camera.resized(*COARSEST)
         points = coarsest.points(subsample_depth(depth, camera, coarsest))
         poses, scores, compared = [], [], 0
-        for down in _downs(gravity / np.linalg.norm(gravity), tilt_sigma):
-            upright = upright_rotation(down)
+        for one in _downs(down, tilt_sigma):
+            upright = upright_rotation(one)
             all_scores = self.views.scores(look_at(points, upright), WIDE_ALPHA).ravel()
             best = np.argpartition(-all_scores, min(LOOKED_AT, len(all_scores) - 1))[:LOOKED_AT]
             poses.append(self.views.poses(best, upright))
@@ -172,10 +190,10 @@ class GlobalSearch:
             one.saw(options[best], float(best_values[best]))
 
     def _add_new(self, poses: np.ndarray, values: np.ndarray) -> None:
-        """Follow the best of the new poses, unless they are known."""
+        """Follow the best of the new poses, unless they are known, or were dropped and agree no better now."""
         for index in distinct(poses, values, MAX_CANDIDATES, ELSEWHERE):
-            known = any(same_place(one.pose, poses[index]) for one in self._followed)
-            if values[index] >= REFINED_LOST and not known:
+            known = self._followed + [one for one in self._dropped if values[index] <= one.best]
+            if values[index] >= REFINED_LOST and not any(same_place(one.pose, poses[index]) for one in known):
                 self._followed.append(_Followed(poses[index], float(values[index])))
 
     def _finish(self, poses: np.ndarray) -> np.ndarray:
@@ -192,9 +210,14 @@ class GlobalSearch:
         """Drop candidates that no longer agree, the worse of two that became one, and the worst beyond a number."""
         kept: list[_Followed] = []
         for one in sorted(self._followed, key=lambda o: (-min(o.frames, FRAMES_TO_BELIEVE), -o.evidence)):
-            if one.evidence >= REFINED_LOST and not any(same_place(one.pose, other.pose) for other in kept):
+            if one.evidence < REFINED_LOST:
+                self._dropped.append(one)
+            elif not any(same_place(one.pose, other.pose) for other in kept):
                 kept.append(one)
         self._followed = kept[:MAX_CANDIDATES]
+        for one in self._dropped:
+            one.since_dropped += 1
+        self._dropped = [one for one in self._dropped if one.since_dropped <= FRAMES_EXCLUDED]
 
 
 def _status(poses: list[PoseCandidate]) -> Literal["found", "several", "searching"]:

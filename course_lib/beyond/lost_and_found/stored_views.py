@@ -54,7 +54,11 @@ class StoredViews:
     def scores(self, look: Look, alpha: float) -> np.ndarray:
         """Return the raw scores `(N, 60)` of a look from every place in every heading.
 
-        Eq. (8) as a mean over its pixels: alpha / (alpha + |measured - stored|), 0 where the map shows nothing.
+        With d = measured - stored, a pixel counts as in eq. (8), but against the pose where it lies behind the map:
+
+            alpha / (alpha + |d|) for d <= 0,    (alpha - d) / (alpha + d) for d > 0,    0 where the map shows nothing
+
+        and the score is the mean over pixels. `readable_scores` gives the same numbers more slowly.
         """
         return _scores(self.ranges, look.rows, look.columns, look.ranges, np.float32(alpha))
 
@@ -95,6 +99,18 @@ def look_at(points: np.ndarray, upright: np.ndarray) -> Look:
     return Look(rows, columns, ranges.astype(np.float32))
 
 
+def readable_scores(stored: np.ndarray, look: Look, alpha: float) -> np.ndarray:
+    """Return what `StoredViews.scores` returns, for stored millimetres `(N, 30, 60)`; a test holds the two together."""
+    metres = np.where(stored == _MISS, np.inf, stored * _MM)
+    scores = []
+    for heading in range(COLUMNS):
+        behind = look.ranges - metres[:, look.rows, (look.columns + heading) % COLUMNS]  # (N, P); -inf at a miss
+        with np.errstate(invalid="ignore"):
+            terms = (alpha - np.maximum(behind, 0)) / (alpha + np.abs(behind))
+        scores.append(terms.sum(axis=1) / max(len(look.rows), 1))
+    return np.stack(scores, axis=1)
+
+
 @compiled()
 def _scores(stored, rows, columns, ranges, alpha):
     count, height, width = stored.shape
@@ -111,7 +127,8 @@ def _scores(stored, rows, columns, ranges, alpha):
         for k in range(len(rows)):
             line, first, measured = twice[rows[k]], columns[k], ranges[k]
             for heading in range(width):
-                one[heading] += alpha / (alpha + abs(line[first + heading] - measured))
+                behind = measured - line[first + heading]
+                one[heading] += (alpha - max(behind, np.float32(0))) / (alpha + abs(behind))
         for heading in range(width):
             one[heading] /= max(len(rows), 1)
     return scores
