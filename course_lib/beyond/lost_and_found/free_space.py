@@ -22,7 +22,7 @@ CLEARLY = 2.0  # one side must face itself so many times as often as the other, 
 MARGIN = 1.5  # metres about the map: it may show one side of a room, and the camera stood on the other
 _DIRECTIONS = 64
 _TRIES = 5_000  # positions tried at once
-_MAX_ROUNDS = 100
+_MAX_ROUNDS = 40
 _OFF = 0.01  # metres off a surface, where a ray starts
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from course_lib.beyond.being_lost import REFINED_LOST, agreement
 from course_lib.beyond.lost_and_found.free_space import FreeSpace
 from course_lib.beyond.lost_and_found.image_gravity import UNKNOWN_TILT_SIGMA, down_from_image, is_upright
-from course_lib.beyond.lost_and_found.stored_views import StoredViews, look_at
+from course_lib.beyond.lost_and_found.stored_views import MAX_PLACES, StoredViews, look_at
 from course_lib.beyond.six_dof.poses import distinct, lengths, local
 from course_lib.beyond.six_dof.prediction import MAX_SPREAD, MotionPrediction
 from course_lib.beyond.six_dof.schedule import Level, pyramid
@@ -85,12 +85,23 @@ class _Followed(MotionPrediction):
 
 
 class GlobalSearch:
-    """Looks for the camera in all free space of a map. seed: of all draws. seen_from: see `FreeSpace`."""
+    """Looks for the camera in all free space of a map.
 
-    def __init__(self, renderer: DepthRenderer, *, seed: int = 0, seen_from: np.ndarray | None = None) -> None:
+    seed: of all draws. max_places: of which views are stored, in seconds; a small map needs fewer. seen_from: see
+    `FreeSpace`. Raises `ValueError` for a map without free space.
+    """
+
+    def __init__(
+        self,
+        renderer: DepthRenderer,
+        *,
+        seed: int = 0,
+        max_places: int = MAX_PLACES,
+        seen_from: np.ndarray | None = None,
+    ) -> None:
         self.renderer = renderer
         self._coarse, self._middle, _ = pyramid(renderer)
-        self.views = StoredViews(FreeSpace(renderer.scene_map, seen_from), renderer.scene_map.origin)
+        self.views = StoredViews(FreeSpace(renderer.scene_map, seen_from), renderer.scene_map.origin, max_places)
         self.rng = np.random.default_rng(seed)
         self._map_is_upright = is_upright(renderer.scene_map)
         self._followed: list[_Followed] = []

@@ -25,7 +25,7 @@ Mode = Literal["following", "searching", "found again"]  # the last if the searc
 class RecoveryEstimate(NamedTuple):
     """What one frame gave."""
 
-    estimate: AnnealedEstimate  # Of the filter. Its status is "doubtful" at best while a search goes on.
+    estimate: AnnealedEstimate  # Of the filter; "doubtful" at best while a search goes on or the start is not confirmed.
     mode: Mode
     candidates: PoseCandidates | None  # The answer of the search, while there is one.
 
@@ -33,7 +33,8 @@ class RecoveryEstimate(NamedTuple):
 class RecoveringLocalizer:
     """`AnnealedLocalizer` that searches when it is lost. search: arguments of `GlobalSearch`; others as there.
 
-    The search is made when it is needed for the first time. It can raise `ValueError` for a map without free space.
+    A start may be wrong, and one image can agree by chance. So the status is "doubtful" at best until `CONFIRMED` good
+    frames after it. The search is made when it is needed for the first time. It can raise `ValueError` for a map without free space.
     """
 
     def __init__(self, renderer: DepthRenderer, n_particles: int = 200, *, seed: int = 0, **search: object) -> None:
@@ -41,8 +42,7 @@ class RecoveringLocalizer:
         self.searching = False
         self._search: GlobalSearch | None = None
         self._of_search = {"seed": seed, **search}
-        self._start = True  # until an image has shown whether the start is right
-        self._debt = Debt()  # of a start that the first image did not confirm
+        self._debt = Debt()  # of good frames, after a start that no image has confirmed yet
         self._lost = self._covered = self._searched = 0
         self._down = np.array([0.0, 1.0, 0.0])  # in the camera, of the last frame that was tracked: upright
 
@@ -57,7 +57,9 @@ class RecoveringLocalizer:
         """Say where the camera is, as `AnnealedLocalizer.initialize` does."""
         self.localizer.initialize(state0)
         self._down = _down_in_camera(np.asarray(state0, dtype=np.float64))
-        self._start, self._debt = True, Debt()
+        self._debt = Debt()
+        for _ in range(CONFIRMED):
+            self._debt.add()
         self._lost, self._covered, self.searching = 0, 0, False
 
     def step(
@@ -77,9 +79,10 @@ class RecoveringLocalizer:
             self.searching, self._searched = True, 0
             self.search.forget()
         self._covered = 0
-        estimate = self._confirmed(estimate)
+        confirmed = self._debt.is_paid(estimate.status == "tracked")
         if not self.searching:
             self._down = _down_in_camera(estimate.state)
+            estimate = estimate if confirmed else _doubtful(estimate)
             return RecoveryEstimate(estimate, "following", None)
         candidates = self.search.step(depth, gravity, suggested=estimate.state, assumed=self._down)
         self._searched += 1
@@ -89,15 +92,6 @@ class RecoveringLocalizer:
         elif mode == "searching":
             estimate = _doubtful(estimate)
         return RecoveryEstimate(estimate, mode, candidates)
-
-    def _confirmed(self, estimate: AnnealedEstimate) -> AnnealedEstimate:
-        """Return the estimate; after a start that its first image denied, "doubtful" until good frames made up."""
-        good = estimate.status == "tracked"
-        if self._start and not good:
-            for _ in range(CONFIRMED):
-                self._debt.add()
-        self._start = False
-        return estimate if self._debt.is_paid(good) else _doubtful(estimate)
 
     def _decide(self, estimate: AnnealedEstimate, candidates: PoseCandidates) -> Mode:
         """End the search if it knows, and set the filter to the pose that it found, unless it is there already."""

@@ -38,9 +38,9 @@ class StoredViews:
     the world's x to its y.
     """
 
-    def __init__(self, free_space: FreeSpace, origin: np.ndarray) -> None:
+    def __init__(self, free_space: FreeSpace, origin: np.ndarray, max_places: int = MAX_PLACES) -> None:
         _, volume = free_space.spread_out(1)
-        count = int(np.clip(volume / SPACING**3, 1, MAX_PLACES))
+        count = int(np.clip(volume / SPACING**3, 1, max_places))
         self.places, _ = free_space.spread_out(count)
         self.ranges = np.empty((count, ROWS, COLUMNS), dtype=np.uint16)
         directions = directions_of_pixels().reshape(-1, 3)
