@@ -5,11 +5,11 @@ from collections import namedtuple
 
 import numpy as np
 
-from course_lib.lessons.lesson_10.adaptive_count import kld_count, occupied_bins
-from course_lib.beyond.lost_and_found.free_space import FreeSpace
 from course_lib.beyond.lost_and_found.global_search import TILT_SIGMA, upright_rotation
 from course_lib.depth_mcl import likelihood, normalize_likelihood, propagate, resample, weights
 from course_lib.geometry import optical_pose, rotation_exp, state_from_optical_pose
+from course_lib.lessons.lesson_10.adaptive_count import kld_count, occupied_bins
+from course_lib.lessons.lesson_10.enclosed_space import EnclosedSpace
 from course_lib.lessons.lesson_10.hotel import ALIKE, CAMERA, FURNITURE, hotel_map, leaving_101
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.sensor import subsample_depth
@@ -27,7 +27,7 @@ RUNS = range(1, 8)  # a run's seed is 10,000 and its number
 Round = namedtuple("Round", "particles weights bins")
 
 
-free_space = functools.cache(lambda: FreeSpace(hotel_map()))
+free_space = functools.cache(lambda: EnclosedSpace(hotel_map()))
 # A depth image of the camera, and the map, on 20 x 15 pixels.
 coarse = functools.partial(subsample_depth, camera=CAMERA, coarse=COARSE)
 coarse_renderer = functools.cache(lambda: DepthRenderer(hotel_map(), COARSE))
