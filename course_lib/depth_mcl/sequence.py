@@ -9,8 +9,8 @@ up.txt              optional: which world axis points up (x, -x, y, -y, z, -z); 
 groundtruth.txt     optional: the same poses with time stamps, TUM format (t tx ty tz qx qy qz qw)
 gravity.txt         optional: frame number, then down as an accelerometer has it, x y z along the camera's axes (right,
                     down, forward), of any length
-accelerometer.txt   optional, where the frames have times: time, then acceleration as an accelerometer measures it, x y z
-                    along the same axes (as in the TUM RGB-D dataset); used where there is no gravity.txt
+accelerometer.txt   optional, where the frames have times: time, then the acceleration that is measured, x y z along the
+                    same axes (as in the TUM RGB-D dataset); used where there is no gravity.txt
 path_on_floor.txt   optional: the surveyed line on the floor below the camera, x y z per row (the paper's truth)
 
 A folder of the TUM RGB-D dataset is read too: depth.txt (a time and a file name a row) then says which images there are

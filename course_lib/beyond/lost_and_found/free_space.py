@@ -39,7 +39,7 @@ class FreeSpace:
         self.caster = EmbreeCaster(scene_map.vertices[scene_map.faces] - scene_map.origin)
         directions = np.random.default_rng(0).standard_normal((_DIRECTIONS, 3))  # the same for every position and seed
         self._directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)
-        self.bounds = scene_map.bounds + [[-MARGIN], [MARGIN]]
+        self.bounds = scene_map.bounds + np.array([[-MARGIN], [MARGIN]])
         if seen_from is None:
             outer, inner = self._facing(1), self._facing(-1)
         else:
@@ -63,10 +63,7 @@ class FreeSpace:
 
     def contains(self, positions: np.ndarray) -> np.ndarray:
         """Return whether a camera can be at positions `(N, 3)`."""
-        return self.allows(*self.look(positions))
-
-    def allows(self, distances: np.ndarray, sides: np.ndarray) -> np.ndarray:
-        """Return whether a camera can be where `look` gives these distances and sides, `(N, 64)` each: `(N,)` bool."""
+        distances, sides = self.look(positions)
         hit = np.isfinite(distances)
         scanned = hit & (sides * self.side >= 0)
         seen = (scanned & (distances <= NEAR_ENOUGH)).mean(axis=1) >= SEEN

@@ -1,4 +1,4 @@
-"""Where is the camera when nobody says? Its image is compared with stored views of all free space; the best are followed.
+"""Where is the camera when nobody says? Compare its image with stored views of all free space, and follow the best.
 
     search = GlobalSearch(renderer, seed=0)
     for depth, gravity in recording:
@@ -19,7 +19,7 @@ from course_lib.beyond.lost_and_found.image_gravity import UNKNOWN_TILT_SIGMA, d
 from course_lib.beyond.lost_and_found.stored_views import MAX_PLACES, StoredViews, look_at
 from course_lib.beyond.six_dof.poses import distinct, lengths, local
 from course_lib.beyond.six_dof.prediction import MAX_SPREAD, MotionPrediction
-from course_lib.beyond.six_dof.schedule import Level, pyramid
+from course_lib.beyond.six_dof.schedule import pyramid
 from course_lib.geometry import optical_pose, rotation_exp, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.sensor import subsample_depth
@@ -44,7 +44,6 @@ FOLLOWERS_KEPT = (6, 4, 2)
 MAX_CANDIDATES = 12
 MEMORY = 0.4  # share of a new frame in a candidate's evidence
 FRAMES_TO_BELIEVE = 3  # that a candidate must have explained
-FRAMES_EXCLUDED = 5  # in which a place that was followed and dropped is not taken again
 CLEAR_GAP = 0.08  # of evidence, between the best candidate and the next elsewhere
 
 
@@ -71,13 +70,11 @@ class _Followed(MotionPrediction):
     def __init__(self, pose: np.ndarray, value: float) -> None:
         super().__init__(pose)
         self.evidence, self.frames = value, 0
-        self.best, self.since_dropped = value, 0
 
     def saw(self, pose: np.ndarray, value: float) -> None:
         self.found(pose)
         self.evidence = (1 - MEMORY) * self.evidence + MEMORY * value
         self.frames += 1
-        self.best = max(self.best, value)
 
     def reaches(self, poses: np.ndarray) -> np.ndarray:
         """Return whether the camera can have moved from here to poses `(N, 4, 4)` since the last frame."""
@@ -105,11 +102,10 @@ class GlobalSearch:
         self.rng = np.random.default_rng(seed)
         self._map_is_upright = is_upright(renderer.scene_map)
         self._followed: list[_Followed] = []
-        self._dropped: list[_Followed] = []
 
     def forget(self) -> None:
         """Start anew, without candidates."""
-        self._followed, self._dropped = [], []
+        self._followed = []
 
     def step(
         self,
@@ -143,9 +139,7 @@ class GlobalSearch:
         ]
         return PoseCandidates(_status(candidates), candidates, compared, sum(level.renders for level in levels))
 
-    def _down(
-        self, depth: np.ndarray, gravity: np.ndarray | None, assumed: np.ndarray
-    ) -> tuple[np.ndarray, float]:
+    def _down(self, depth: np.ndarray, gravity: np.ndarray | None, assumed: np.ndarray) -> tuple[np.ndarray, float]:
         """Return down `(3,)`, a unit vector in the optical frame, and its sigma in radians."""
         if gravity is None and self._map_is_upright:
             return down_from_image(depth, self.renderer.camera, assumed)
@@ -201,10 +195,10 @@ class GlobalSearch:
             one.saw(options[best], float(best_values[best]))
 
     def _add_new(self, poses: np.ndarray, values: np.ndarray) -> None:
-        """Follow the best of the new poses, unless they are known, or were dropped and agree no better now."""
+        """Follow the best of the new poses, unless they are known."""
         for index in distinct(poses, values, MAX_CANDIDATES, ELSEWHERE):
-            known = self._followed + [one for one in self._dropped if values[index] <= one.best]
-            if values[index] >= REFINED_LOST and not any(same_place(one.pose, poses[index]) for one in known):
+            known = any(same_place(one.pose, poses[index]) for one in self._followed)
+            if values[index] >= REFINED_LOST and not known:
                 self._followed.append(_Followed(poses[index], float(values[index])))
 
     def _finish(self, poses: np.ndarray) -> np.ndarray:
@@ -221,14 +215,9 @@ class GlobalSearch:
         """Drop candidates that no longer agree, the worse of two that became one, and the worst beyond a number."""
         kept: list[_Followed] = []
         for one in sorted(self._followed, key=lambda o: (-min(o.frames, FRAMES_TO_BELIEVE), -o.evidence)):
-            if one.evidence < REFINED_LOST:
-                self._dropped.append(one)
-            elif not any(same_place(one.pose, other.pose) for other in kept):
+            if one.evidence >= REFINED_LOST and not any(same_place(one.pose, other.pose) for other in kept):
                 kept.append(one)
         self._followed = kept[:MAX_CANDIDATES]
-        for one in self._dropped:
-            one.since_dropped += 1
-        self._dropped = [one for one in self._dropped if one.since_dropped <= FRAMES_EXCLUDED]
 
 
 def _status(poses: list[PoseCandidate]) -> Literal["found", "several", "searching"]:
@@ -241,7 +230,7 @@ def _status(poses: list[PoseCandidate]) -> Literal["found", "several", "searchin
 
 
 def _downs(down: np.ndarray, tilt_sigma: float) -> np.ndarray:
-    """Return unit vectors `(K, 3)` to try as down: the given one, and if it is not sure, six about it, one sigma off."""
+    """Return unit vectors `(K, 3)` to try as down: the given one, and if it is not sure, six that lie one sigma off."""
     if tilt_sigma <= SURE_TILT:
         return down[None]
     angles = np.arange(6) * np.pi / 3

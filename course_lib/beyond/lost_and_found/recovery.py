@@ -25,7 +25,7 @@ Mode = Literal["following", "searching", "found again"]  # the last if the searc
 class RecoveryEstimate(NamedTuple):
     """What one frame gave."""
 
-    estimate: AnnealedEstimate  # Of the filter; "doubtful" at best while a search goes on or the start is not confirmed.
+    estimate: AnnealedEstimate  # Of the filter; at best "doubtful" while a search goes on or the start is unconfirmed.
     mode: Mode
     candidates: PoseCandidates | None  # The answer of the search, while there is one.
 
@@ -33,8 +33,9 @@ class RecoveryEstimate(NamedTuple):
 class RecoveringLocalizer:
     """`AnnealedLocalizer` that searches when it is lost. search: arguments of `GlobalSearch`; others as there.
 
-    A start may be wrong, and one image can agree by chance. So the status is "doubtful" at best until `CONFIRMED` good
-    frames after it. The search is made when it is needed for the first time. It can raise `ValueError` for a map without free space.
+    A start may be wrong, and one image can agree by chance. So the status is at best "doubtful" until `CONFIRMED` good
+    frames after it. The search is made when it is needed for the first time. It raises `ValueError` for a map without
+    free space.
     """
 
     def __init__(self, renderer: DepthRenderer, n_particles: int = 200, *, seed: int = 0, **search: object) -> None:
