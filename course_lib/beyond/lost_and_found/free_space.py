@@ -16,7 +16,6 @@ from course_lib.rendering.scene_map import SceneMap
 CLEARANCE = 0.15  # metres to the nearest surface: no camera is nearer, and it would see nothing
 NEAR_ENOUGH = 6.0  # metres: most depth cameras measure no farther
 SEEN = 0.06  # share of all directions that must meet a surface near enough; a camera's image covers about as much
-SCANNED_SIDE = 0.75  # share of what is met that must show the side that was scanned
 ACROSS = 0.3  # metres: surfaces that face each other across less free space than this do not count
 CLEARLY = 2.0  # one side must face itself so many times as often as the other, or the normals tell nothing
 MARGIN = 1.5  # metres about the map: it may show one side of a room, and the camera stood on the other
@@ -64,10 +63,8 @@ class FreeSpace:
     def contains(self, positions: np.ndarray) -> np.ndarray:
         """Return whether a camera can be at positions `(N, 3)`."""
         distances, sides = self.look(positions)
-        hit = np.isfinite(distances)
-        scanned = hit & (sides * self.side >= 0)
-        seen = (scanned & (distances <= NEAR_ENOUGH)).mean(axis=1) >= SEEN
-        return seen & (distances.min(axis=1) > CLEARANCE) & (scanned.sum(axis=1) >= SCANNED_SIDE * hit.sum(axis=1))
+        seen = (sides * self.side >= 0) & (distances <= NEAR_ENOUGH)
+        return (seen.mean(axis=1) >= SEEN) & (distances.min(axis=1) > CLEARANCE)
 
     def look(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return what positions `(N, 3)` see in 64 directions: distances and sides, `(N, 64)` each.

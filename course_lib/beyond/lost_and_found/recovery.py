@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.being_lost import CONFIRMED, Debt
+from course_lib.beyond.being_lost import CONFIRMED, Debt, judge_refined
 from course_lib.beyond.lost_and_found.global_search import GlobalSearch, PoseCandidates, same_place
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.geometry import optical_pose
@@ -16,6 +16,7 @@ from course_lib.rendering.renderer import DepthRenderer
 
 # All chosen on development recordings (the kitchen, the shipped corridor, corridor seeds from 10,001 on).
 LOST = 3  # frames in a row: a filter that is lost for a frame or two often finds itself
+UNKNOWN = 12  # the same, if the images agree and only the covariance is wide: along a bare wall no search helps soon
 COVERED = 3  # frames in a row without a measurement, in which the camera may have been carried away
 PATIENCE = 20  # frames of a search that cannot decide, after which a filter that is tracked is believed
 
@@ -76,11 +77,12 @@ class RecoveringLocalizer:
             self._covered += 1
             return RecoveryEstimate(estimate, self._mode(), None)
         self._lost = self._lost + 1 if estimate.status == "lost" else 0
-        if not self.searching and (self._covered >= COVERED or self._lost >= LOST):
+        confirmed = self._debt.is_paid(estimate.status == "tracked")
+        frames = UNKNOWN if confirmed and judge_refined(estimate.agreement) != "lost" else LOST
+        if not self.searching and (self._covered >= COVERED or self._lost >= frames):
             self.searching, self._searched = True, 0
             self.search.forget()
         self._covered = 0
-        confirmed = self._debt.is_paid(estimate.status == "tracked")
         if not self.searching:
             self._down = _down_in_camera(estimate.state)
             estimate = estimate if confirmed else _doubtful(estimate)

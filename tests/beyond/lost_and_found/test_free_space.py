@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import trimesh
 
 from course_lib.beyond.lost_and_found.free_space import CLEARANCE, FreeSpace
 from course_lib.beyond.lost_and_found.global_search import upright_rotation
@@ -107,13 +108,23 @@ def test_floor_and_walls_show_what_is_down(renderer, state):
     assert is_upright(renderer.scene_map)
 
 
-def test_one_wall_or_noise_shows_no_down_and_a_tilted_map_has_none(rng):
+def test_one_wall_beside_a_board_or_noise_shows_no_down_and_a_tilted_map_has_none(rng):
     assumed = np.array([0.0, 1.0, 0.0])
     with DepthRenderer(wall(2.0), SMALL) as renderer:
         one_wall = renderer.render(np.array([0, 0, 0, 0.2, 0.1, 0.3]))[0]
-    for depth in (one_wall, rng.uniform(0.5, 6.0, SMALL.shape), np.full(SMALL.shape, np.nan)):
+    board = trimesh.creation.box((0.1, 0.5, 0.5), trimesh.transformations.euler_matrix(0.3, 0.2, 0.9))
+    board.apply_translation((1.8, 0.0, 0.0))
+    behind = wall(3.0)
+    with DepthRenderer(SceneMap(*_joined(behind, board)), SMALL) as renderer:
+        small_board = renderer.render(np.array([0, 0, 0, 0.2, 0.1, 0.3]))[0]
+    for depth in (one_wall, small_board, rng.uniform(0.5, 6.0, SMALL.shape), np.full(SMALL.shape, np.nan)):
         found, sigma = down_from_image(depth, SMALL, assumed)
         assert (found == assumed).all()
         assert sigma == UNKNOWN_TILT_SIGMA
     turned = room(4.0).transformed(np.linalg.inv(optical_pose(np.array([0, 0, 0, 0.5, 0.4, 0.3]))))
     assert not is_upright(turned)
+
+
+def _joined(scene_map, mesh):
+    faces = np.concatenate([scene_map.faces, mesh.faces + len(scene_map.vertices)])
+    return np.concatenate([scene_map.vertices, mesh.vertices]), faces
