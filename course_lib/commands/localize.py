@@ -27,12 +27,13 @@ the folder of the recording:
   (the paper's filter takes 0.8 s a frame at 640 x 480: for it, make the images smaller, and intrinsics.txt with them)
   poses.txt        optional, the truth: frame, row-major 4 x 4 camera-to-world matrix (x right, y down, z forward)
   up.txt           optional: which axis of map and poses points up (x, -x, y, -y, z, -z)
+  gravity.txt      optional: frame, then down along the camera's axes x y z; or accelerometer.txt as TUM RGB-D has it
 
 examples:
   own recording, no truth; the camera starts 1.2 m up at x = 2, y = -0.5 and looks along +y:
     localize --map home.ply --sequence walk --start 2 -0.5 1.2 0 0 90 --up z --out results/walk
-  nobody knows where it starts; z is up (gravity.txt tells which way is down, else the camera is held upright):
-    localize --map home.ply --sequence walk --start unknown --up z --recover
+  nobody knows where it starts; z is up (gravity.txt or accelerometer.txt tells which way is down, else the images do):
+    localize --map home.ply --sequence walk --start unknown --up z
   depth as TUM RGB-D files have it (5000 units a metre), start from a file with a 4 x 4 matrix:
     localize --map desk.ply --sequence desk --depth-scale 5000 --far 5 --start first_pose.txt
   a wagon on a level floor, with truth:
@@ -59,8 +60,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     told = "the filter: annealed and refined, which adapts to the camera's motion (default with --dof 6, six degrees "
     told += "of freedom only), or the paper's (default with --dof xyyaw), whose particles and noise are set by hand"
     add("--method", choices=["annealed", "paper"], help=told)
-    told = "search the whole map when the annealed filter is lost: seconds a frame until it is found again"
-    options.add_flag(parser, "--recover", told)
+    told = "search the whole map when the annealed filter is lost, about a second a frame until it is found again "
+    told += "(default: where up is known and the map has free space to search)"
+    add("--recover", action=argparse.BooleanOptionalAction, help=told)
     options.add_number(parser, "--particles", "number of particles (default: 200)", 200)
     options.add_number(parser, "--seed", "seed of the random numbers (default: 0)", 0)
     options.add_number(parser, "--frames", "only the first N frames")
@@ -92,6 +94,8 @@ def run(arguments: argparse.Namespace) -> int:
         sequence, start, searched = _found_start(arguments, scene_map, sequence, up)
     else:
         start = _given_start(arguments.start, sequence, "z" if up == "unknown" else up)
+    if arguments.recover is None:
+        arguments.recover = method == "annealed" and up != "unknown" and recordings.can_search(scene_map)
     localized = recordings.run_recovering if arguments.recover else recordings.run_annealed
     if method == "paper":
         localized = partial(recordings.run_sequence, **recordings.system_noise(arguments.dof, *sigma))

@@ -9,6 +9,8 @@ up.txt              optional: which world axis points up (x, -x, y, -y, z, -z); 
 groundtruth.txt     optional: the same poses with time stamps, TUM format (t tx ty tz qx qy qz qw)
 gravity.txt         optional: frame number, then down as an accelerometer has it, x y z along the camera's axes (right,
                     down, forward), of any length
+accelerometer.txt   optional, where the frames have times: time, then the acceleration that is measured, x y z along the
+                    same axes (as in the TUM RGB-D dataset); used where there is no gravity.txt
 path_on_floor.txt   optional: the surveyed line on the floor below the camera, x y z per row (the paper's truth)
 
 A folder of the TUM RGB-D dataset is read too: depth.txt (a time and a file name a row) then says which images there are
@@ -147,7 +149,7 @@ def read_sequence(folder: str | Path, units_per_metre: float = UNITS_PER_METRE) 
     return DepthSequence(
         folder, frames, [images[f] for f in frames], camera_to_world, intrinsics, image_shape,
         sequence_files.read_up(folder), times, sequence_files.read_path_on_floor(folder), units_per_metre,
-        sequence_files.read_gravity(folder, frames),
+        sequence_files.read_gravity(folder, frames, times),
     )  # fmt: skip
 
 

@@ -20,6 +20,9 @@ UNITS_PER_METRE = 1000.0  # of depth images: millimetres (7-Scenes); files of th
 
 TUM_TIME_DIFFERENCE = 0.02  # seconds between an image and its pose, as in the dataset's tool associate.py
 
+ACCELEROMETER_SAMPLES = 51  # whose mean is gravity; the Kinect of these recordings gives 500 a second (chosen)
+ACCELEROMETER_GAP = 0.5  # seconds between an image and the nearest sample, at most (chosen)
+
 
 class SequenceError(ValueError):
     """A recording that cannot be used: a missing or malformed file, or files that do not fit each other."""
@@ -223,11 +226,14 @@ def read_path_on_floor(folder: Path) -> np.ndarray | None:
     return _read_rows(path, 3, "x y z") if is_given(path) else None
 
 
-def read_gravity(folder: Path, frames: list[int]) -> np.ndarray | None:
-    """Down in the camera's optical frame `(T, 3)`, of any length, from gravity.txt; None where it is missing."""
+def read_gravity(folder: Path, frames: list[int], times: np.ndarray | None) -> np.ndarray | None:
+    """Down in the camera's optical frame `(T, 3)`, of any length, from gravity.txt, else from accelerometer.txt.
+
+    times: `(T,)` seconds, of the frames. None where both files are missing, or no frame has a time.
+    """
     path = folder / "gravity.txt"
     if not is_given(path):
-        return None
+        return None if times is None else _read_accelerometer(folder, times)
     rows = _read_rows(path, 4, "frame number, then x y z")
     if not (rows[:, 1:] != 0).any(axis=1).all():
         raise SequenceError(f"{path} must hold a frame number and x y z, not all zero, per row")
@@ -236,6 +242,32 @@ def read_gravity(folder: Path, frames: list[int]) -> np.ndarray | None:
     if missing:
         raise SequenceError(f"{path} has no row for frame {missing[0]} (and {len(missing) - 1} others)")
     return np.array([by_frame[frame] for frame in frames])
+
+
+def _read_accelerometer(folder: Path, times: np.ndarray) -> np.ndarray | None:
+    """Down `(T, 3)` at times `(T,)` from accelerometer.txt of a TUM RGB-D recording: rows t ax ay az, m/s^2.
+
+    The mean of the samples nearest in time, `ACCELEROMETER_SAMPLES` of them, leaves out most of the hand's own
+    acceleration. Some drivers give the force that holds the camera up, others its opposite. We take a camera to be held
+    upright for most of a recording, which tells the sign (gravity.txt is for others). None where the file is missing.
+    """
+    path = folder / "accelerometer.txt"
+    if not is_given(path):
+        return None
+    rows = _read_rows(path, 4, "t ax ay az")
+    rows = rows[np.argsort(rows[:, 0], kind="stable")]
+    half = ACCELEROMETER_SAMPLES // 2
+    nearest = np.clip(np.searchsorted(rows[:, 0], times), half, max(half, len(rows) - 1 - half))
+    sums = np.concatenate([np.zeros((1, 3)), np.cumsum(rows[:, 1:], axis=0)])
+    down = sums[np.minimum(nearest + half + 1, len(rows))] - sums[np.maximum(nearest - half, 0)]
+    down *= 1.0 if down[:, 1].sum() >= 0 else -1.0
+    gap = np.abs(rows[np.clip(nearest, 0, len(rows) - 1), 0] - times).max()
+    if gap > ACCELEROMETER_GAP or not (down != 0).any(axis=1).all():
+        raise SequenceError(
+            f"{path} must hold an acceleration, not zero, within {ACCELEROMETER_GAP} s of every image; the largest gap "
+            f"is {gap:.1f} s"
+        )
+    return down
 
 
 def read_up(folder: Path) -> str | None:

@@ -10,8 +10,9 @@ import numpy as np
 
 from course_lib.beyond.being_lost import Agreement, TrackStatus, agreement, judge_track
 from course_lib.beyond.guarded_frames import Fault, FrameCheck
-from course_lib.beyond.lost_and_found.global_search import TILT_SIGMA, GlobalSearch, PoseCandidates
-from course_lib.beyond.lost_and_found.recovery import UNKNOWN_TILT_SIGMA, RecoveringLocalizer
+from course_lib.beyond.lost_and_found.free_space import FreeSpace
+from course_lib.beyond.lost_and_found.global_search import GlobalSearch, PoseCandidates
+from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.fallon import COARSE_HEIGHT, COARSE_WIDTH
@@ -67,20 +68,30 @@ def find_start(
     """Search where a recording begins: the frame in which it was clear, what was found, and the first place's pose.
 
     The pose is a camera-to-world matrix `(4, 4)` in the recording's own world, all NaN where none was found. Without
-    gravity.txt the camera is taken to be held upright, to within `UNKNOWN_TILT_SIGMA`.
+    gravity.txt or accelerometer.txt the images show which way is down, or the camera is taken to be held upright.
     """
     to_z_up = rotation_to_z_up(up)
-    gravity, tilt_sigma = sequence.gravity, TILT_SIGMA
-    if gravity is None:
-        gravity, tilt_sigma = np.tile([0.0, 1.0, 0.0], (len(sequence), 1)), UNKNOWN_TILT_SIGMA
     with DepthRenderer(scene_map.transformed(to_z_up), sequence.camera(near, far)) as renderer:
         search = GlobalSearch(renderer, seed=seed)
         for index in progress(range(min(START_FRAMES, len(sequence)))):
-            candidates = search.step(sequence.depth(index), gravity[index], tilt_sigma)
+            candidates = search.step(sequence.depth(index), _gravity(sequence, index))
             if candidates.status == "found":
                 break
     pose = optical_pose(candidates.poses[0].state) if candidates.poses else np.full((4, 4), np.nan)
     return index, candidates, np.linalg.inv(to_z_up) @ pose
+
+
+def _gravity(sequence: DepthSequence, index: int) -> np.ndarray | None:
+    return None if sequence.gravity is None else sequence.gravity[index]
+
+
+def can_search(scene_map: SceneMap) -> bool:
+    """Return whether a map has free space to search in, and the ray caster is there to look for it."""
+    try:
+        FreeSpace(scene_map).spread_out(1)
+    except (ImportError, ValueError):
+        return False
+    return True
 
 
 def run_sequence(
@@ -108,7 +119,7 @@ def run_recovering(scene_map: SceneMap, sequence: DepthSequence, **options: obje
     """Localize a recording as `run_annealed` does, and where it is lost, search globally (`RecoveringLocalizer`)."""
 
     def step(localizer: RecoveringLocalizer, depth: np.ndarray, index: int) -> AnnealedEstimate:
-        found = localizer.step(depth, gravity=None if sequence.gravity is None else sequence.gravity[index])
+        found = localizer.step(depth, gravity=_gravity(sequence, index))
         searched = 0 if found.candidates is None else found.candidates.renders
         return found.estimate._replace(renders=found.estimate.renders + searched)
 

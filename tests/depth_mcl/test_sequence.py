@@ -153,6 +153,40 @@ def test_a_folder_of_the_tum_dataset_is_read_by_its_times(tum_folder):
     assert (len(sequence), len(sequence.times), sequence.has_poses) == (4, 4, False)
 
 
+@pytest.mark.parametrize("sign", [1, -1], ids=["the force that holds it", "gravity"])
+def test_an_accelerometer_tells_what_is_down_at_the_time_of_every_image(tum_folder, sign):
+    """Two hundred samples a second; down turns steadily, and the hand shakes."""
+    folder, _ = tum_folder
+    times = 1305031102 + np.arange(-100, 120) / 200
+    turned = 0.5 * (times - 1305031102)
+    down = np.column_stack([np.sin(turned), np.cos(turned), 0.1 * np.ones(len(times))])
+    shaken = 9.81 * down + 3 * np.sin(80 * times)[:, None]
+    rows = np.column_stack([times, -sign * shaken])[::-1]  # in no order
+    np.savetxt(folder / "accelerometer.txt", rows, fmt="%.6f", header="accelerometer data\ntimestamp ax ay az")
+    sequence = read_sequence(folder)
+    assert sequence.gravity.shape == (3, 3)
+    found = sequence.gravity / np.linalg.norm(sequence.gravity, axis=1, keepdims=True)
+    angles = 0.5 * (sequence.times - 1305031102)
+    expected = np.column_stack([np.sin(angles), np.cos(angles), 0.1 * np.ones(3)]) / np.hypot(1, 0.1)
+    assert np.arccos(np.sum(found * expected, axis=1)).max() < np.deg2rad(2.5)
+    (folder / "gravity.txt").write_text("1 0 0 1\n2 0 0 1\n4 0 0 1\n")
+    assert (read_sequence(folder).gravity == [0, 0, 1]).all(), "gravity.txt is meant for these frames, so it goes first"
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ("1305031102 0 1", "rows of 4 numbers"),
+        ("1305031102 0 0 0", "an acceleration, not zero"),
+        ("1305031000 0 1 0", "within 0.5 s of every image; the largest gap is 102.1 s"),
+    ],
+)
+def test_an_accelerometer_that_cannot_be_used_is_named(tum_folder, rows, said):
+    (tum_folder[0] / "accelerometer.txt").write_text(rows + "\n")
+    with pytest.raises(SequenceError, match=said):
+        read_sequence(tum_folder[0])
+
+
 @pytest.mark.parametrize(
     ("damage", "said"),
     [

@@ -1,4 +1,4 @@
-"""Where is the camera when nobody says? Many coarse particles over all free space; the best are kept and followed.
+"""Where is the camera when nobody says? Compare its image with stored views of all free space, and follow the best.
 
     search = GlobalSearch(renderer, seed=0)
     for depth, gravity in recording:
@@ -14,25 +14,29 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from course_lib.beyond.being_lost import REFINED_LOST, agreement
-from course_lib.beyond.lost_and_found.adaptive_count import kld_count, occupied_bins
 from course_lib.beyond.lost_and_found.free_space import FreeSpace
+from course_lib.beyond.lost_and_found.image_gravity import UNKNOWN_TILT_SIGMA, down_from_image, is_upright
+from course_lib.beyond.lost_and_found.stored_views import MAX_PLACES, StoredViews, look_at
 from course_lib.beyond.six_dof.poses import distinct, lengths, local
-from course_lib.beyond.six_dof.prediction import MotionPrediction
-from course_lib.beyond.six_dof.schedule import Level, pyramid
-from course_lib.depth_mcl.likelihood import paper_weighting
+from course_lib.beyond.six_dof.prediction import MAX_SPREAD, MotionPrediction
+from course_lib.beyond.six_dof.schedule import pyramid
 from course_lib.depth_mcl.one_at_a_time import one_at_a_time
 from course_lib.geometry import optical_pose, rotation_exp, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.sensor import subsample_depth
 
-# All chosen on development recordings (the kitchen, the shipped corridor, corridor seeds from 10,001 on).
-COARSEST = (20, 15)  # pixels of the images of which thousands are drawn
-WIDE_ALPHA = 0.3  # metres, of eq. (8) for them: the nearest of thousands is still decimetres off
+# All chosen on development recordings (the kitchen, the rooms of a HoloLens, the shipped corridor, corridor and room
+# seeds from 10,001 on).
+COARSEST = (20, 15)  # pixels of the image that is compared with all stored views
+WIDE_ALPHA = 0.3  # metres, as in eq. (8), for them: the nearest of thousands is still decimetres off
 TILT_SIGMA = np.deg2rad(1.0)  # of the measured gravity
-APART = np.array([0.25, np.deg2rad(12.0)])  # metres, radians: nearer particles are one start
+SURE_TILT = np.deg2rad(4.0)  # with a larger sigma, tilts about the given one are tried too
+UPRIGHT = np.array([0.0, 1.0, 0.0])  # down in the optical frame of a camera that is held upright
+APART = np.array([0.25, np.deg2rad(10.0)])  # metres, radians: nearer places are one start
 DISTINCT = np.array([0.05, np.deg2rad(3.0)])  # nearer refined poses are one
 ELSEWHERE = np.array([0.3, np.deg2rad(15.0)])  # poses farther apart are two places
-BATCH = 500  # poses that are drawn and scored at once
-STARTS = (300, 150, 80, 50, 30, 20)  # how many starts each step on the coarse image takes along
+LOOKED_AT = 2_000  # of the best stored views, from which the starts are taken
+STARTS = (150, 80, 50, 30, 20, 12)  # how many starts each step on the coarse image takes along
 START_SCALES = (0.4, 0.3, 0.25, 0.2, 0.15, 0.1)
 FINISH_SCALES = (0.1, 0.05, 0.05)  # on the middle image
 FOLLOWERS = 16  # particles of each candidate that is followed
@@ -57,7 +61,7 @@ class PoseCandidates(NamedTuple):
 
     status: Literal["found", "several", "searching"]  # one pose explains the frames; more than one; none long enough
     poses: list[PoseCandidate]  # Best first; no two are at the same place.
-    particles: int  # How many poses were drawn from free space in this frame.
+    particles: int  # How many poses were compared with this frame by their stored views.
     renders: int  # How many images were drawn in this frame.
 
 
@@ -73,67 +77,106 @@ class _Followed(MotionPrediction):
         self.evidence = (1 - MEMORY) * self.evidence + MEMORY * value
         self.frames += 1
 
+    def reaches(self, poses: np.ndarray) -> np.ndarray:
+        """Return whether the camera can have moved from here to poses `(N, 4, 4)` since the last frame."""
+        return (lengths(local(self.pose, poses)) <= MAX_SPREAD).all(axis=-1)
+
 
 class GlobalSearch:
-    """Looks for the camera in all free space of a map. least, most: poses drawn in a frame (KLD-sampling)."""
+    """Looks for the camera in all free space of a map.
 
-    def __init__(self, renderer: DepthRenderer, *, seed: int = 0, least: int = 1_000, most: int = 10_000) -> None:
+    seed: of all draws. max_places: of which views are stored, in seconds; a small map needs fewer. seen_from: see
+    `FreeSpace`. Raises `ValueError` for a map without free space.
+    """
+
+    def __init__(
+        self,
+        renderer: DepthRenderer,
+        *,
+        seed: int = 0,
+        max_places: int = MAX_PLACES,
+        seen_from: np.ndarray | None = None,
+    ) -> None:
         self.renderer = renderer
-        camera = renderer.camera.resized(*COARSEST)
-        coarsest = DepthRenderer(renderer.scene_map, camera, renderer.backend, exact=renderer.exact)
-        self._coarsest = Level(coarsest, renderer.camera, paper_weighting(WIDE_ALPHA))
         self._coarse, self._middle, _ = pyramid(renderer)
-        self.free_space = FreeSpace(renderer.scene_map)
+        self.views = StoredViews(FreeSpace(renderer.scene_map, seen_from), renderer.scene_map.origin, max_places)
         self.rng = np.random.default_rng(seed)
-        self.least, self.most = least, most
+        self._map_is_upright = is_upright(renderer.scene_map)
         self._followed: list[_Followed] = []
-        self._count = most
 
     @one_at_a_time
     def forget(self) -> None:
         """Start anew, without candidates."""
-        self._followed, self._count = [], self.most
+        self._followed = []
 
     @one_at_a_time
     def step(
         self,
         depth: np.ndarray,
-        gravity: np.ndarray,
-        tilt_sigma: float = TILT_SIGMA,
+        gravity: np.ndarray | None = None,
+        *,
         suggested: np.ndarray | None = None,
+        assumed: np.ndarray = UPRIGHT,
     ) -> PoseCandidates:
         """Return the candidates after a depth image `(H, W)` in metres.
 
-        gravity: `(3,)` down, in the camera's optical frame, known to within `tilt_sigma` radians. suggested: a state
-        `(6,)` where the camera may be; it is judged like every other candidate.
+        gravity: `(3,)` down, in the camera's optical frame, as an accelerometer measures it to within `TILT_SIGMA`. If
+        you leave it out, the image tells it (image_gravity.py), if it does not differ much from `assumed` `(3,)`.
+        suggested: a state `(6,)` where the camera may be; it is judged like every other candidate.
         """
-        gravity = np.asarray(gravity, dtype=np.float64)
-        if gravity.shape != (3,) or not np.isfinite(gravity).all() or not gravity.any():
-            raise ValueError(f"gravity must be three finite numbers, not all zero; got {gravity}")
-        levels = (self._coarsest, self._coarse, self._middle)
+        down, tilt_sigma = self._down(depth, gravity, assumed)
+        levels = (self._coarse, self._middle)
         for level in levels:
             level.measure(depth)
-        self._follow()
-        poses, scores = self._draw(gravity, tilt_sigma)
-        self._add_new(poses, scores, suggested)
+        starts, compared = self._starts(depth, down, tilt_sigma)
+        new = self._refined(starts)
+        if suggested is not None:
+            new = np.concatenate([new, optical_pose(suggested)[None]])
+        values = self._values(new)
+        self._follow(new, values)
+        self._add_new(new, values)
         self._drop()
         candidates = [
             PoseCandidate(state_from_optical_pose(one.pose), one.evidence, one.frames)
             for one in sorted(self._followed, key=lambda one: -one.evidence)
         ]
-        return PoseCandidates(_status(candidates), candidates, len(poses), sum(level.renders for level in levels))
+        return PoseCandidates(_status(candidates), candidates, compared, sum(level.renders for level in levels))
 
-    def _draw(self, gravity: np.ndarray, tilt_sigma: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return poses from free space and their scores on the coarsest image."""
-        poses, scores = [], []
-        for begin in range(0, self._count, BATCH):
-            positions = self.free_space.draw(min(BATCH, self._count - begin), self.rng)
-            poses.append(upright_poses(positions, gravity, tilt_sigma, self.rng))
-            scores.append(self._coarsest.score(self._coarsest.draw(poses[-1])))
-        return np.concatenate(poses), np.concatenate(scores)
+    def _down(self, depth: np.ndarray, gravity: np.ndarray | None, assumed: np.ndarray) -> tuple[np.ndarray, float]:
+        """Return down `(3,)`, a unit vector in the optical frame, and its sigma in radians."""
+        if gravity is None and self._map_is_upright:
+            return down_from_image(depth, self.renderer.camera, assumed)
+        given = np.asarray(assumed if gravity is None else gravity, dtype=np.float64)
+        if given.shape != (3,) or not np.isfinite(given).all() or not given.any():
+            raise ValueError(f"gravity must be three finite numbers, not all zero; got {given}")
+        return given / np.linalg.norm(given), UNKNOWN_TILT_SIGMA if gravity is None else TILT_SIGMA
 
-    def _follow(self) -> None:
-        """Move every candidate on to the best of a small cloud, refined."""
+    def _starts(self, depth: np.ndarray, down: np.ndarray, tilt_sigma: float) -> tuple[np.ndarray, int]:
+        """Return the poses `(N, 4, 4)` whose stored views agree best with the image, and how many were compared."""
+        camera = self.renderer.camera
+        coarsest = camera.resized(*COARSEST)
+        points = coarsest.points(subsample_depth(depth, camera, coarsest))
+        poses, scores, compared = [], [], 0
+        for one in _downs(down, tilt_sigma):
+            upright = upright_rotation(one)
+            all_scores = self.views.scores(look_at(points, upright), WIDE_ALPHA).ravel()
+            best = np.argpartition(-all_scores, min(LOOKED_AT, len(all_scores) - 1))[:LOOKED_AT]
+            poses.append(self.views.poses(best, upright))
+            scores.append(all_scores[best])
+            compared += len(all_scores)
+        every = np.concatenate(poses)
+        return every[distinct(every, np.concatenate(scores), STARTS[0], APART)], compared
+
+    def _refined(self, poses: np.ndarray) -> np.ndarray:
+        """Return the best of poses `(N, 4, 4)` that differ, after all steps of refinement."""
+        for scale, keep in zip(START_SCALES, STARTS, strict=True):
+            images = self._coarse.draw(poses)
+            kept = distinct(poses, self._coarse.score(images), keep, DISTINCT)
+            poses = self._coarse.step(poses[kept], images[kept], scale)
+        return self._finish(poses)
+
+    def _follow(self, new: np.ndarray, new_values: np.ndarray) -> None:
+        """Move every candidate on to the best of a small cloud, refined, or to a new pose within its reach."""
         if not self._followed:
             return
         clouds = [one.draw(FOLLOWERS, one.spread(), self.rng) for one in self._followed]
@@ -148,21 +191,14 @@ class GlobalSearch:
         poses = self._finish(poses)
         values = self._values(poses)
         for i, one in enumerate(self._followed):
-            mine = np.flatnonzero(owner == i)
-            best = mine[np.argmax(values[mine])]
-            one.saw(poses[best], values[best])
+            mine, near = owner == i, one.reaches(new)
+            options = np.concatenate([poses[mine], new[near]])
+            best_values = np.concatenate([values[mine], new_values[near]])
+            best = np.argmax(best_values)
+            one.saw(options[best], float(best_values[best]))
 
-    def _add_new(self, poses: np.ndarray, scores: np.ndarray, suggested: np.ndarray | None) -> None:
-        """Refine the best of the new poses and follow them, unless they are known."""
-        poses = poses[distinct(poses, scores, STARTS[0], APART)]
-        for scale, keep in zip(START_SCALES, STARTS, strict=True):
-            images = self._coarse.draw(poses)
-            kept = distinct(poses, self._coarse.score(images), keep, DISTINCT)
-            poses = self._coarse.step(poses[kept], images[kept], scale)
-        poses = self._finish(poses)
-        if suggested is not None:
-            poses = np.concatenate([poses, optical_pose(suggested)[None]])
-        values = self._values(poses)
+    def _add_new(self, poses: np.ndarray, values: np.ndarray) -> None:
+        """Follow the best of the new poses, unless they are known."""
         for index in distinct(poses, values, MAX_CANDIDATES, ELSEWHERE):
             known = any(same_place(one.pose, poses[index]) for one in self._followed)
             if values[index] >= REFINED_LOST and not known:
@@ -185,8 +221,6 @@ class GlobalSearch:
             if one.evidence >= REFINED_LOST and not any(same_place(one.pose, other.pose) for other in kept):
                 kept.append(one)
         self._followed = kept[:MAX_CANDIDATES]
-        bins = occupied_bins(np.array([one.pose for one in self._followed]), 0.5, 0.5)
-        self._count = self.most if bins == 0 else kld_count(bins, self.least, self.most)
 
 
 def _status(poses: list[PoseCandidate]) -> Literal["found", "several", "searching"]:
@@ -198,24 +232,19 @@ def _status(poses: list[PoseCandidate]) -> Literal["found", "several", "searchin
     return "several" if rivals else "found"
 
 
-def upright_poses(
-    positions: np.ndarray, gravity: np.ndarray, tilt_sigma: float, rng: np.random.Generator
-) -> np.ndarray:
-    """Draw camera-to-world poses `(N, 4, 4)` at positions `(N, 3)`, of any heading, upright as gravity says.
-
-    gravity: `(3,)` down in the camera's optical frame, known to within `tilt_sigma` radians. The world's z is up.
-    """
-    n, down = len(positions), gravity / np.linalg.norm(gravity)
-    tilt = np.concatenate([tilt_sigma * rng.standard_normal((n, 2)), np.zeros((n, 1))], axis=1)
-    heading = np.concatenate([np.zeros((n, 2)), rng.uniform(-np.pi, np.pi, (n, 1))], axis=1)
-    poses = np.tile(np.eye(4), (n, 1, 1))
-    poses[:, :3, :3] = rotation_exp(heading) @ rotation_exp(tilt) @ _turn(down, np.array([0.0, 0.0, -1.0]))
-    poses[:, :3, 3] = positions
-    return poses
+def _downs(down: np.ndarray, tilt_sigma: float) -> np.ndarray:
+    """Return unit vectors `(K, 3)` to try as down: the given one, and if it is not sure, six that lie one sigma off."""
+    if tilt_sigma <= SURE_TILT:
+        return down[None]
+    angles = np.arange(6) * np.pi / 3
+    around = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(6)]) * tilt_sigma
+    tilts = np.concatenate([np.zeros((1, 3)), around]) @ upright_rotation(down)  # about axes that lie level
+    return np.einsum("kij,j->ki", rotation_exp(tilts), down)
 
 
-def _turn(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the rotation `(3, 3)` that turns unit vector a into b by the shortest way."""
+def upright_rotation(down: np.ndarray) -> np.ndarray:
+    """Return the shortest rotation `(3, 3)` that turns `down` `(3,)`, in the optical frame, into the world's -z."""
+    a, b = down / np.linalg.norm(down), np.array([0.0, 0.0, -1.0])
     axis, cosine = np.cross(a, b), float(a @ b)
     sine = np.linalg.norm(axis)
     if sine >= 1e-9:

@@ -4,9 +4,9 @@ import functools
 
 import numpy as np
 
-from course_lib.beyond.lost_and_found import adaptive_count
 from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.exercises import Exercise
+from course_lib.lessons.lesson_10 import adaptive_count
 
 kld_count = functools.cache(adaptive_count.kld_count)  # a check asks for thousands
 

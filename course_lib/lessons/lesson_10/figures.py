@@ -9,9 +9,9 @@ from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
-from course_lib.beyond.lost_and_found.adaptive_count import kld_count
 from course_lib.beyond.lost_and_found.global_search import PoseCandidates
 from course_lib.lessons.kit.display import described
+from course_lib.lessons.lesson_10.adaptive_count import kld_count
 from course_lib.lessons.lesson_10.hotel import ALIKE, FURNITURE, WALLS, Recording, leaving_101
 from course_lib.lessons.lesson_10.narrowing import Round, shares
 from course_lib.lessons.lesson_10.trials import GOALS, KIDNAPPED, alarms, traces
@@ -196,11 +196,11 @@ def trade_off(ratios: np.ndarray) -> tuple[Figure, list[tuple[float, float, floa
 
 TOLD = {  # title, frame, what happens in it, alternative text
     "next door": ("Put into the room next door", 8, "put into 102", """The error jumps to 4 m at frame 8. The filter
-        says tracked for 14 frames, then lost when the camera reaches the corridor, and is right again from frame 25
-        on."""),
-    "door": ("An open door that is shut on the map", 10, "looks at the door", """The filter is right until frame 12,
-        though it says lost in six frames; it searches in frames 13 to 15, and from frame 16 on it says tracked at 4 m
-        from the truth."""),
+        says tracked for 14 frames, then lost when the camera reaches the corridor. It searches from frame 24 on, and
+        it is right again from frame 26 on."""),
+    "door": ("An open door that is shut on the map", 10, "looks at the door", """The filter is right until frame 13,
+        though it says lost in four frames. It searches twice, the second time in frames 12 to 14, and from frame 15 on
+        it says tracked at 4 m from the truth."""),
 }  # fmt: skip
 
 

@@ -5,11 +5,11 @@ from collections import namedtuple
 
 import numpy as np
 
-from course_lib.beyond.lost_and_found.adaptive_count import kld_count, occupied_bins
-from course_lib.beyond.lost_and_found.free_space import FreeSpace
-from course_lib.beyond.lost_and_found.global_search import TILT_SIGMA, upright_poses
+from course_lib.beyond.lost_and_found.global_search import TILT_SIGMA, upright_rotation
 from course_lib.depth_mcl import likelihood, normalize_likelihood, propagate, resample, weights
-from course_lib.geometry import optical_pose, state_from_optical_pose
+from course_lib.geometry import optical_pose, rotation_exp, state_from_optical_pose
+from course_lib.lessons.lesson_10.adaptive_count import kld_count, occupied_bins
+from course_lib.lessons.lesson_10.enclosed_space import EnclosedSpace
 from course_lib.lessons.lesson_10.hotel import ALIKE, CAMERA, FURNITURE, hotel_map, leaving_101
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.sensor import subsample_depth
@@ -27,7 +27,7 @@ RUNS = range(1, 8)  # a run's seed is 10,000 and its number
 Round = namedtuple("Round", "particles weights bins")
 
 
-free_space = functools.cache(lambda: FreeSpace(hotel_map()))
+free_space = functools.cache(lambda: EnclosedSpace(hotel_map()))
 # A depth image of the camera, and the map, on 20 x 15 pixels.
 coarse = functools.partial(subsample_depth, camera=CAMERA, coarse=COARSE)
 coarse_renderer = functools.cache(lambda: DepthRenderer(hotel_map(), COARSE))
@@ -46,6 +46,22 @@ def distance_to_either(states: np.ndarray, true: np.ndarray) -> np.ndarray:
 def start_anywhere(n: int, gravity: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """Draw particles `(n, 6)` anywhere in the free space, upright as gravity `(3,)` says, of any heading."""
     return state_from_optical_pose(upright_poses(free_space().draw(n, rng), gravity, TILT_SIGMA, rng))
+
+
+def upright_poses(
+    positions: np.ndarray, gravity: np.ndarray, tilt_sigma: float, rng: np.random.Generator
+) -> np.ndarray:
+    """Draw camera-to-world poses `(N, 4, 4)` at positions `(N, 3)`, of any heading, upright as gravity says.
+
+    gravity: `(3,)` down in the camera's optical frame, known to within `tilt_sigma` radians. The world's z is up.
+    """
+    n = len(positions)
+    tilt = np.concatenate([tilt_sigma * rng.standard_normal((n, 2)), np.zeros((n, 1))], axis=1)
+    heading = np.concatenate([np.zeros((n, 2)), rng.uniform(-np.pi, np.pi, (n, 1))], axis=1)
+    poses = np.tile(np.eye(4), (n, 1, 1))
+    poses[:, :3, :3] = rotation_exp(heading) @ rotation_exp(tilt) @ upright_rotation(gravity)
+    poses[:, :3, 3] = positions
+    return poses
 
 
 @functools.lru_cache(maxsize=len(RUNS))

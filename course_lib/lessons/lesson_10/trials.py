@@ -20,7 +20,7 @@ from course_lib.lessons.lesson_10.hotel import CAMERA, Recording, hotel_map, lea
 from course_lib.paths import data_path
 from course_lib.rendering.renderer import DepthRenderer
 
-PARTICLES, SEARCH = 150, {"least": 200, "most": 2_000}  # of the filter and of the search: the hotel is small
+PARTICLES, SEARCH = 150, {"max_places": 3_000}  # of the filter and of the search: the hotel is small
 SEARCHED, NEAR = 24, 0.2  # frames of the walk out of 101, metres
 
 BEFORE, COVERED, AFTER = 6, 4, 8
@@ -44,23 +44,23 @@ def follow(recording: Recording, seed: int, closed: tuple = (), until: int | Non
 def kidnap(name: str) -> tuple[int | None, int, int]:
     """Follow a camera, cover it, carry it away, and uncover it elsewhere.
 
-    Return the frames after the uncovering until the state was right and tracked (None if never), the poses drawn from
-    free space, and how many places the search named as equals in the last frame.
+    Return the frames after the uncovering until the state was right and tracked (None if never), the frames of
+    the search, and how many places the search named as equals in the last frame.
     """
     before, after = (walk(corners, n) for corners, n in zip(KIDNAPPINGS[name], (BEFORE, AFTER), strict=True))
     states = np.concatenate([before, np.repeat(before[-1:], COVERED, axis=0), after])
-    recording, recovered, particles, uncovered = record(states, 10_001), None, 0, BEFORE + COVERED
+    recording, recovered, searched, uncovered = record(states, 10_001), None, 0, BEFORE + COVERED
     recording.depths[BEFORE:uncovered] = np.nan
     for number, found in enumerate(follow(recording, 10_001)):
-        particles += found.candidates.particles if found.candidates else 0
+        searched += found.candidates is not None
         right = np.linalg.norm(found.estimate.state[:3] - states[number, :3]) <= NEAR
         if number >= uncovered and right and found.mode != "searching" and found.estimate.status == "tracked":
             recovered = number - uncovered + 1
             break
     if found.mode != "searching":
-        return recovered, particles, 1
+        return recovered, searched, 1
     evidence = np.array([one.evidence for one in found.candidates.poses])
-    return recovered, particles, int(np.sum(evidence > evidence.max(initial=0) - CLEAR_GAP))
+    return recovered, searched, int(np.sum(evidence > evidence.max(initial=0) - CLEAR_GAP))
 
 
 @functools.cache
