@@ -28,12 +28,16 @@ TURNS = np.deg2rad([[0, 0, 0], [0, 14, 0], [0, -14, 0], [0, 28, 0], [0, -28, 0],
 STEPS = np.array([[0, 0, 0], [0.2, 0, 0], [-0.2, 0, 0], [0, 0, 0.2]])
 COARSE_SCALES = (0.3, 0.2, 0.15, 0.1, 0.1, 0.07)  # metres, of the robust weights: a step each
 FINE_SCALES = (0.07, 0.05, 0.05, 0.03, 0.03)
+PIXELS = 5.0  # times as many of them are independent as before a map, whose errors two images do not share
+FLOOR = np.array([0.008, np.deg2rad(0.25)])  # metres, radians: no motion is measured better, because of the camera's errors
 KEPT = 3  # motions that go from the coarse images to the finer ones
 APART = np.array([0.04, np.deg2rad(3.0)])  # metres, radians: two motions that differ
 MIN_PAIRED = 0.25  # share of the measured pixels that fall on the image before
 MIN_AGREEING = 0.7  # mean weight of these pixels
 CLEARLY = 0.05  # of score: what the motion may lose where it is kept along what the images do not show
-UNPAIRED = 0.4  # what a pixel that falls beside the image before costs, as a share of one that disagrees
+EXPECTED = 0.004  # of score: what one unit of the guess's log density is worth
+FARTHEST = 25.0  # squared distance from the guess, in units of its spread, beyond which no motion is less likely
+UNPAIRED = 0.2  # what a pixel that falls beside the image before costs, as a share of one that disagrees
 
 
 class View(NamedTuple):
@@ -140,6 +144,7 @@ def image_motion(
     widens the covariance (`with_rivals`).
     """
     starts = np.concatenate([np.repeat(STEPS, len(TURNS), axis=0), np.tile(TURNS, (len(STEPS), 1))], axis=1)
+    predicted = retract(np.eye(4), guess)
     poses = retract(np.eye(4), np.concatenate([guess[None], starts]))
     for old, new, scales, count in zip(before, now, (COARSE_SCALES, FINE_SCALES), (KEPT, 2), strict=True):
         has_normal = np.isfinite(new.normals).all(axis=-1)
@@ -148,13 +153,14 @@ def image_motion(
             return None
         for scale in scales:
             poses = retract(poses, solve(compiled_motion_equations(old, points, poses, scale)[0]))
-        scores = _scores(old, points, poses)[0]
+        far = np.sum((local(predicted, poses) / spread) ** 2, axis=1)
+        scores = _scores(old, points, poses)[0] - EXPECTED * np.minimum(far, FARTHEST) / 2
         kept = distinct(poses, scores, count, APART)
         poses, scores = poses[kept], scores[kept]
     has_partner, n, r = paired(old, points, poses[0])
-    predicted = retract(np.eye(4), guess)
     shown = information(points[has_partner], n, new.normals[has_normal][has_partner], r)
-    covariance, gain = fused(np.diag(spread**2), shown)
+    covariance, gain = fused(np.diag(spread**2), PIXELS * shown)
+    covariance += np.diag(np.repeat(FLOOR, 3) ** 2)
     fused_pose = retract(predicted, gain @ local(predicted, poses[0]))
     score, share, agreeing = (float(x[0]) for x in _scores(old, points, fused_pose[None]))
     if share < MIN_PAIRED or agreeing < MIN_AGREEING or score < scores[0] - CLEARLY:

@@ -178,8 +178,9 @@ class AnnealedLocalizer:
         before, self._views = self._views, [View.of(level.measured, level.renderer.camera) for level in self.levels[:2]]
         if before is None or not self.image_motion:
             return told
-        guess = self._prediction.motion if told is None else told.motion
-        return image_motion(before, self._views, guess, self._prediction.spread(told)) or told
+        if told is not None:
+            return image_motion(before, self._views, told.motion, self._prediction.spread(told)) or told
+        return image_motion(before, self._views, self._prediction.motion, self._prediction.guess_spread())
 
     def _look_twice(self, spread: np.ndarray, measured: MeasuredMotion | None) -> tuple[_Found, np.ndarray]:
         """Return the best pose of a cloud, or of a wider one if it agrees less than usual, and its spread."""
@@ -219,11 +220,13 @@ class AnnealedLocalizer:
         apart = local(predicted, found.pose)
         if image_says == "tracked" or self._confirmed(found, spread, measured):
             pose = retract(predicted, gain @ apart)
-            if fine.score(fine.draw(pose[None]))[0] < found.score - SEEN:
+            surprising = measured is not None and not is_near(apart, covariance)
+            if surprising or fine.score(fine.draw(pose[None]))[0] < found.score - SEEN:
                 pose = found.pose
             sees_all = np.linalg.matrix_rank(information, hermitian=True) == 6
             prediction.found(pose, bool(sees_all), found.rivals)
-            self._covariance = with_rivals(narrowed, pose, found.rivals)
+            others = [*found.rivals, Rival(predicted, 0.0)] if surprising else found.rivals
+            self._covariance = with_rivals(narrowed, pose, others)
             return found._replace(pose=pose), image_says
         if measured is not None and not fits and is_known(covariance):
             pose = retract(self._pose, measured.motion)
@@ -233,6 +236,7 @@ class AnnealedLocalizer:
                 self._covariance = covariance
                 return found._replace(pose=pose, agreement=agrees, rivals=()), "doubtful"
         prediction.not_found(found.pose, spread, found.rivals, measured)
+        # An image in doubt does not make a pose known: the camera may as well be where it was predicted.
         in_doubt = with_rivals(narrowed, found.pose, [Rival(predicted, 0.0)])
         self._covariance = in_doubt if fits else covariance
         return found, image_says

