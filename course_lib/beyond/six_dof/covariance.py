@@ -98,7 +98,7 @@ def fused(prior: np.ndarray, information: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def is_near(apart: np.ndarray, covariance: np.ndarray) -> bool:
-    """Return whether a motion `(6,)` is within `NEAR` of zero: d' P^-1 d <= 6 `NEAR`^2."""
+    """Return whether a motion d `(6,)` may be an error of this covariance P `(6, 6)`: d' P^-1 d <= 6 `NEAR`^2."""
     return bool(apart @ np.linalg.solve(covariance, apart) <= 6 * NEAR**2)
 
 

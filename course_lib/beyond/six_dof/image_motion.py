@@ -6,7 +6,8 @@ on a pixel of the image before, with point q and normal n there. If T is right,
     r_j = n_j . (T p_j - q_j) = 0,    J_j = (R' n_j, p_j x R' n_j)
 
 Gauss-Newton (refinement.py) solves this from several starts, coarse images first, because a camera carried by hand may
-turn by half of its field of view from one frame to the next. It is projective point-to-plane ICP (Blais and Levine 1995).
+turn by half of its field of view from one frame to the next. This is projective
+point-to-plane ICP (Blais and Levine 1995).
 """
 
 from collections.abc import Sequence
@@ -29,7 +30,7 @@ STEPS = np.array([[0, 0, 0], [0.2, 0, 0], [-0.2, 0, 0], [0, 0, 0.2]])
 COARSE_SCALES = (0.3, 0.2, 0.15, 0.1, 0.1, 0.07)  # metres, of the robust weights: a step each
 FINE_SCALES = (0.07, 0.05, 0.05, 0.03, 0.03)
 PIXELS = 5.0  # times as many of them are independent as before a map, whose errors two images do not share
-FLOOR = np.array([0.008, np.deg2rad(0.25)])  # metres, radians: no motion is measured better, because of the camera's errors
+FLOOR = np.array([0.008, np.deg2rad(0.25)])  # metres, radians: the camera's errors leave so much
 KEPT = 3  # motions that go from the coarse images to the finer ones
 APART = np.array([0.04, np.deg2rad(3.0)])  # metres, radians: two motions that differ
 MIN_PAIRED = 0.25  # share of the measured pixels that fall on the image before

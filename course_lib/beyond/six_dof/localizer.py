@@ -69,6 +69,7 @@ from course_lib.rendering.renderer import DepthRenderer
 APART = 0.2  # of the prediction's spread: two particles nearer than this are one hypothesis
 DISTINCT = np.array([0.02, np.deg2rad(1.0)])  # metres, radians: the same for two refined poses
 SURE = np.array([0.06, np.deg2rad(3.0)])  # metres, radians: a cloud so small needs few particles
+CLEAR = 0.05  # share of pixels measured behind the map up to which a pose that fits little of the map may be known
 SEEN = 0.03  # of raw score: what moving a pose along directions that the image does not show may cost
 RIVAL_WITHIN = 0.06  # of raw score: a pose that fits less is no rival of the best
 RIVAL_APART = np.array([0.15, np.deg2rad(10.0)])  # metres, radians
@@ -155,7 +156,9 @@ class AnnealedLocalizer:
         """Return where the camera is, from a depth image `(H, W)` in metres, NaN = no measurement.
 
         increment: motion `(6,)` since the last frame by an odometer or an IMU, along and about the body's axes at that
-        frame (x forward, y left, z up), metres and radians; `motion_between` gives it from two states. A frame without any measurement warns (`NoMeasurementWarning`), and its state is the prediction.
+        frame (x forward, y left, z up), metres and radians; `motion_between` gives it from two states. Raises
+        `ValueError` for another, before anything changes. A frame without any measurement warns
+        (`NoMeasurementWarning`), and its state is the prediction.
         """
         prediction = self._prediction
         if prediction is None:
@@ -236,9 +239,9 @@ class AnnealedLocalizer:
                 self._covariance = covariance
                 return found._replace(pose=pose, agreement=agrees, rivals=()), "doubtful"
         prediction.not_found(found.pose, spread, found.rivals, measured)
-        # An image in doubt does not make a pose known: the camera may as well be where it was predicted.
-        in_doubt = with_rivals(narrowed, found.pose, [Rival(predicted, 0.0)])
-        self._covariance = in_doubt if fits else covariance
+        if fits and found.agreement.through > CLEAR:  # the camera may as well be where it was predicted
+            narrowed = with_rivals(narrowed, found.pose, [Rival(predicted, 0.0)])
+        self._covariance = narrowed if fits else covariance
         return found, image_says
 
     def _predicted_covariance(

@@ -53,8 +53,8 @@ def optical_increment(increment: np.ndarray) -> np.ndarray:
     cure = "motion_between(state_a, state_b) gives one from two states"
     if array.shape != (6,):
         raise ValueError(
-            f"increment must have shape (6,): x forward, y left, z up in metres, then a rotation vector in radians; got "
-            f"shape {array.shape}. {cure}"
+            f"increment must have shape (6,): x forward, y left, z up in metres, then a rotation vector in radians; "
+            f"got shape {array.shape}. {cure}"
         )
     if not np.isfinite(array).all():
         raise ValueError(f"increment must be finite; got {array.tolist()}. Without an odometer's value give None")

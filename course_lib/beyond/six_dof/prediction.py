@@ -47,7 +47,7 @@ class MeasuredMotion(NamedTuple):
 
     @classmethod
     def of_odometer(cls, increment: np.ndarray) -> "MeasuredMotion":
-        """Return the motion of an increment `(6,)`; its standard deviations are `SPREAD_OF_INCREMENT` of its lengths."""
+        """Return the motion of an increment `(6,)`; standard deviations: `SPREAD_OF_INCREMENT` of its lengths."""
         sigma = np.maximum(SPREAD_OF_INCREMENT * lengths(increment), MIN_SPREAD)
         return cls(increment, np.diag(np.repeat(sigma, 3) ** 2))
 
@@ -85,7 +85,7 @@ class MotionPrediction:
     ) -> np.ndarray:
         """Draw poses `(n, 4, 4)` where the camera may be now. If there are rivals, half of the poses start from them.
 
-        The first two poses have no noise: one at rest, one going on; or, with a measured motion, both there. spread: `(6,)`.
+        The first two poses have no noise: one at rest, one going on; with a measured motion, both there. spread: `(6,)`
         """
         starts = np.tile(self.pose, (n, 1, 1))
         for k, rival in enumerate(self.rivals):
@@ -95,13 +95,12 @@ class MotionPrediction:
         shares[:2], noise[:2] = [0.0, 1.0][:n], 0.0
         motions, wide = shares[:, None] * self.motion, np.tile(spread, (n, 1))
         if measured is not None:
-            there = np.arange(n) // 2 % UNMEASURED < UNMEASURED - 1  # of pairs, because every other one may be a rival's
+            # Of pairs, because every other pose may start from a rival.
+            there = np.arange(n) // 2 % UNMEASURED < UNMEASURED - 1
             motions[there], wide[~there] = measured.motion, np.maximum(spread, self.spread())
         return retract(retract(starts, motions), wide * noise)
 
-    def preference(
-        self, poses: np.ndarray, spread: np.ndarray, measured: MeasuredMotion | None = None
-    ) -> np.ndarray:
+    def preference(self, poses: np.ndarray, spread: np.ndarray, measured: MeasuredMotion | None = None) -> np.ndarray:
         """Return what the prediction says of poses `(N, 4, 4)`, in units of the raw score: `(N,)`, at most 0.
 
         max_k PRIOR_SHARE (-d_k^2 / 2) + CARRIED evidence_k, over the last pose and its rivals k; d: distance from the

@@ -90,7 +90,9 @@ def test_where_it_was_not_found_or_has_rivals_the_cloud_starts_from_either_place
     prediction.found(there, rivals=[Rival(rival, -0.01)])
     along = local(pose, prediction.draw(1000, np.full(6, 1e-3), rng))[:, 0]
     assert (along > 1.5).mean() == pytest.approx(0.5, abs=0.01)
-    assert prediction.spread(MeasuredMotion.of_odometer(10 * STEP))[0] == pytest.approx(10 * module.SPREAD_OF_INCREMENT * np.hypot(0.03, 0.1))
+    assert prediction.spread(MeasuredMotion.of_odometer(10 * STEP))[0] == pytest.approx(
+        10 * module.SPREAD_OF_INCREMENT * np.hypot(0.03, 0.1)
+    )
     preferred = prediction.preference(np.array([rival]), np.full(6, 0.1))
     assert preferred == pytest.approx([-0.01 * module.CARRIED], abs=1e-9)
     arrived = retract(rival, STEP)
