@@ -71,9 +71,11 @@ def carried(covariance: np.ndarray, motion: np.ndarray) -> np.ndarray:
 
 
 def predicted_covariance(covariance: np.ndarray, motion: np.ndarray, noise: np.ndarray) -> np.ndarray:
-    """Return the covariance `(6, 6)` of a pose after a motion that nobody measured, along and about its own axes.
+    """Return the covariance `(6, 6)` of the predicted pose, along and about its own axes.
 
     (1 + a) P + (1 + 1/a) Q, a^2 = mean of Q's variances over P's: covers any dependence of the two errors
+
+    Before a bare wall motions between images are wrong the same way frame after frame: their sum would be too sure.
 
     P: the given covariance, carried along. noise: Q `(6, 6)`, the covariance of the motion `(6,)`.
     """

@@ -38,7 +38,7 @@ MIN_AGREEING = 0.7  # mean weight of these pixels
 CLEARLY = 0.05  # of score: what the motion may lose where it is kept along what the images do not show
 EXPECTED = 0.004  # of score: what one unit of the guess's log density is worth
 FARTHEST = 25.0  # squared distance from the guess, in units of its spread, beyond which no motion is less likely
-UNPAIRED = 0.2  # what a pixel that falls beside the image before costs, as a share of one that disagrees
+UNPAIRED = 0.1  # what a pixel that falls beside the image before costs, as a share of one that disagrees
 
 
 class View(NamedTuple):
@@ -155,7 +155,8 @@ def image_motion(
         for scale in scales:
             poses = retract(poses, solve(compiled_motion_equations(old, points, poses, scale)[0]))
         far = np.sum((local(predicted, poses) / spread) ** 2, axis=1)
-        scores = _scores(old, points, poses)[0] - EXPECTED * np.minimum(far, FARTHEST) / 2
+        scores, shares, _ = _scores(old, points, poses)
+        scores = scores - EXPECTED * np.minimum(far, FARTHEST) / 2 - (shares < MIN_PAIRED)
         kept = distinct(poses, scores, count, APART)
         poses, scores = poses[kept], scores[kept]
     has_partner, n, r = paired(old, points, poses[0])

@@ -38,7 +38,6 @@ from course_lib.beyond.being_lost import (
 )
 from course_lib.beyond.six_dof.covariance import (
     PREDICTED,
-    carried,
     fused,
     in_world_and_body,
     is_near,
@@ -69,6 +68,7 @@ from course_lib.rendering.renderer import DepthRenderer
 APART = 0.2  # of the prediction's spread: two particles nearer than this are one hypothesis
 DISTINCT = np.array([0.02, np.deg2rad(1.0)])  # metres, radians: the same for two refined poses
 SURE = np.array([0.06, np.deg2rad(3.0)])  # metres, radians: a cloud so small needs few particles
+NOTHING_BEHIND = 0.01  # the same share, up to which a pose where the measured motion leads needs no second look
 CLEAR = 0.05  # share of pixels measured behind the map up to which a pose that fits little of the map may be known
 SEEN = 0.03  # of raw score: what moving a pose along directions that the image does not show may cost
 RIVAL_WITHIN = 0.06  # of raw score: a pose that fits less is no rival of the best
@@ -191,7 +191,8 @@ class AnnealedLocalizer:
         cloud = np.minimum(np.hypot(spread, not_known), np.repeat(MAX_SPREAD, 3))
         sure = measured is not None and (cloud <= np.repeat(SURE, 3)).all()
         found = self._look(self.sure_layers if sure else self.layers, cloud, measured)
-        if self.second_look and self._judge.doubts(found.agreement) and not self._confirmed(found, spread, measured):
+        settled = found.agreement.through <= NOTHING_BEHIND and self._confirmed(found, spread, measured)
+        if self.second_look and self._judge.doubts(found.agreement) and not settled:
             wider = np.maximum(WIDER * cloud, np.repeat(START_SPREAD, 3))
             again = self._look(self.second_look, wider, measured)
             if again.score > found.score:
@@ -250,9 +251,8 @@ class AnnealedLocalizer:
         """Return the covariance after a motion `(6,)`; at the first image that of the start, as wide as the cloud."""
         if self._covariance is None:
             return np.diag(spread**2)
-        if measured is not None:
-            return carried(self._covariance, motion) + measured.covariance
-        return predicted_covariance(self._covariance, motion, np.diag((PREDICTED * spread) ** 2))
+        noise = np.diag((PREDICTED * spread) ** 2) if measured is None else measured.covariance
+        return predicted_covariance(self._covariance, motion, noise)
 
     def _look(self, layers: tuple[Layer, ...], spread: np.ndarray, measured: MeasuredMotion | None) -> _Found:
         """Return the best of the particles that went through the layers and the steps of refinement."""

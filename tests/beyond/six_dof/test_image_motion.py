@@ -67,12 +67,12 @@ def test_a_leap_is_measured_with_its_sign_and_its_covariance(renderer, rng, moti
 def test_before_a_bare_wall_it_keeps_the_guess_along_it_and_tells_how_near_it_came(rng):
     with DepthRenderer(wall(1.5), SMALL) as bare:
         guess = np.array([0.1, -0.05, 0.0, 0.0, 0.0, 0.1])
-        measured = between(bare, np.array([0.0, 0.0, 0.2, 0.1, 0, 0]), rng, optical_pose(REST), guess)
+        measured = between(bare, np.array([0.0, 0.0, 0.2, 0.1, 0, 0]), rng, optical_pose(REST), guess, SPREAD / 3)
     assert measured.motion[2:4] == pytest.approx([0.2, 0.1], abs=0.02)
-    assert measured.motion[[0, 5]] == pytest.approx([0.1, 0.1], abs=0.03)
+    assert measured.motion[[0, 5]] == pytest.approx([0.1, 0.1], abs=0.06)
     sigma = np.sqrt(np.diag(measured.covariance))
-    assert sigma[2] < 0.03
-    assert sigma[[0, 1, 5]].min() > 0.1
+    assert sigma[2] < 0.05
+    assert sigma[[0, 1, 5]].min() > 0.05
 
 
 def test_motions_that_explain_the_images_alike_widen_the_covariance(rng):
