@@ -53,6 +53,11 @@ class Agreement(NamedTuple):
         """The same for a refined pose, agreeing - 3 through: 1 at best, NaN without a pixel."""
         return self.agreeing - THROUGH_WEIGHT * self.through
 
+    @property
+    def contradicts(self) -> bool:
+        """Return whether surfaces of the map stand where the camera looked through; where the map is empty, none do."""
+        return not self.refined_support >= 0.0
+
 
 NOTHING_MEASURED = Agreement(0, np.nan, np.nan, np.nan)
 
@@ -149,7 +154,7 @@ class TrackJudge:
 
         After lost frames it stays lost until the debt of good frames without a rival is paid.
         """
-        status = "lost" if image == "tracked" and not is_known(covariance) else image
+        status = image if is_known(covariance) else "lost"
         if status == "lost":
             self._debt.add()
         elif not self._debt.is_paid(status == "tracked" and not has_rivals):

@@ -50,6 +50,7 @@ ABLATIONS: dict[str, dict] = {
     "without hypotheses": {"steps": tuple(step._replace(hypotheses=1) for step in STEPS), "rivals": 0},
     "without rivals": {"rivals": 0},
     "without fusion": {"fuse": image_alone},
+    "without image motion": {"image_motion": False},
 }
 FLOOR_SCALES = (0.1, 0.05, 0.05, 0.03, 0.03)  # metres, of the steps from the truth
 WRONG_POSITION, WRONG_ROTATION_DEG = 0.20, 20.0  # beyond either a pose is wrong, and should be said to be lost

@@ -20,26 +20,34 @@ SCALE = 0.05  # metres: robust scale of the residuals, as in the last steps of t
 MIN_SIGMA = 0.005  # metres: no map and no camera are better
 SIGNIFICANT = 2.0  # information along a direction, in units of what roughness gives there by chance
 PREDICTED = 0.4  # standard deviation of a prediction's error, as a share of the cloud's spread
+NEAR = 3.0  # root mean square of a pose's distances from another, in standard deviations, up to which they are one
 RIVAL_SCALE = 0.02  # of raw score: a rival that is worse by this much is e times less likely
 
 
 def pose_information(measured: np.ndarray, image: np.ndarray, camera: DepthCamera) -> np.ndarray:
     """Return the inverse covariance `(6, 6)` of a pose, along and about the camera's axes, from its image alone.
 
-    I = n (sum w J K' + K J') / (2 sum w s^2),    s^2 = sum w r^2 / sum w
-
-    J = (n, p x n) with the normals n of the map, K = (m, p x m) with the normals m of the measured surface; roughness
-    that only one of them shows adds nothing on average. A direction u below `SIGNIFICANT` sqrt(sum (w J.u K.u)^2) has
-    information 0. n is `INDEPENDENT_PIXELS`. measured, image: `(H, W)` depth.
+    measured, image: `(H, W)` depth, of the camera and of the map from this pose; `information` has the equation.
     """
     p = camera.points(measured)
     (q,), (n,) = surface_normals(image[None].astype(np.float64), camera)
     _, (m,) = surface_normals(np.asarray(measured, dtype=np.float64)[None], camera)
     r = np.sum(n * (p - q), axis=-1)
     used = np.isfinite(r) & np.isfinite(m).all(axis=-1)
-    if not used.any():
+    return information(p[used], n[used], m[used], r[used])
+
+
+def information(p: np.ndarray, n: np.ndarray, m: np.ndarray, r: np.ndarray) -> np.ndarray:
+    """Return the inverse covariance `(6, 6)` of a pose from residuals `(K,)` of points `(K, 3)` to a surface, metres.
+
+    I = N (sum w J K' + K J') / (2 sum w s^2),    s^2 = sum w r^2 / sum w
+
+    J = (n, p x n) with the normals n of the surface, K = (m, p x m) with the normals m of the measured one; roughness
+    that only one of them shows adds nothing on average. A direction u below `SIGNIFICANT` sqrt(sum (w J.u K.u)^2) has
+    information 0. N is `INDEPENDENT_PIXELS`.
+    """
+    if not len(r):
         return np.zeros((6, 6))
-    p, n, m, r = p[used], n[used], m[used], r[used]
     w = 1.0 / (1.0 + (r / SCALE) ** 2) ** 2
     of_map, of_image = (np.concatenate([normal, np.cross(p, normal)], axis=1) for normal in (n, m))
     shared = (of_map * w[:, None]).T @ of_image
@@ -50,21 +58,29 @@ def pose_information(measured: np.ndarray, image: np.ndarray, camera: DepthCamer
     return INDEPENDENT_PIXELS / (np.sum(w) * variance) * (directions * shown) @ directions.T
 
 
-def predicted_covariance(covariance: np.ndarray, motion: np.ndarray, spread: np.ndarray) -> np.ndarray:
-    """Return the covariance `(6, 6)` of the predicted pose, along and about its own axes.
+def carried(covariance: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """Return the covariance `(6, 6)` of a pose after a known motion, along and about the new pose's axes: A P A'.
 
-    (1 + a) P + (1 + 1/a) Q, a^2 = mean of Q's variances over P's: covers any dependence of the two errors
-
-    P: the given covariance, carried along: T Exp(x) M = T M Exp(A x), A x = (R' (v + w x t), R' w). motion: `(6,)`
-    predicted, in that pose's frame. spread: `(6,)` of the cloud; the standard deviations of Q are `PREDICTED` times it.
+    T Exp(x) M = T M Exp(A x), A x = (R' (v + w x t), R' w). motion: `(6,)`, M, in the frame of the pose before.
     """
     turned_back = rotation_exp(motion[3:]).T
     carry = np.zeros((6, 6))
     carry[:3, :3] = carry[3:, 3:] = turned_back
     carry[:3, 3:] = turned_back @ np.cross(np.eye(3), motion[:3]).T
-    variances = (PREDICTED * spread) ** 2
-    before, noise = carry @ covariance @ carry.T, np.diag(variances)
-    ratio = np.sqrt(np.mean(np.diag(before) / variances))
+    return carry @ covariance @ carry.T
+
+
+def predicted_covariance(covariance: np.ndarray, motion: np.ndarray, noise: np.ndarray) -> np.ndarray:
+    """Return the covariance `(6, 6)` of the predicted pose, along and about its own axes.
+
+    (1 + a) P + (1 + 1/a) Q, a^2 = mean of Q's variances over P's: covers any dependence of the two errors
+
+    Before a bare wall motions between images are wrong the same way frame after frame: their sum would be too sure.
+
+    P: the given covariance, carried along. noise: Q `(6, 6)`, the covariance of the motion `(6,)`.
+    """
+    before = carried(covariance, motion)
+    ratio = np.sqrt(np.mean(np.diag(before) / np.diag(noise)))
     return (1 + 1 / ratio) * before + (1 + ratio) * noise
 
 
@@ -81,6 +97,11 @@ def fused(prior: np.ndarray, information: np.ndarray) -> tuple[np.ndarray, np.nd
     covariance = (basis / surer) @ basis.T
     gain = (basis * (1.0 - 1.0 / surer)) @ np.linalg.inv(basis)
     return covariance, gain
+
+
+def is_near(apart: np.ndarray, covariance: np.ndarray) -> bool:
+    """Return whether a motion d `(6,)` may be an error of this covariance P `(6, 6)`: d' P^-1 d <= 6 `NEAR`^2."""
+    return bool(apart @ np.linalg.solve(covariance, apart) <= 6 * NEAR**2)
 
 
 def with_rivals(covariance: np.ndarray, pose: np.ndarray, rivals: Sequence[Rival]) -> np.ndarray:

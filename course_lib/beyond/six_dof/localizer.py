@@ -7,12 +7,14 @@
 
 A frame goes through the paper's steps several times, each time closer:
 
+    measure    the motion since the last image, from both images (image_motion.py)
     predict    draw particles about where the camera may be, as wide as it has been moving (prediction.py)
     anneal     weigh them on coarse images, gently, so that enough survive (uncertainty.py); resample; with less noise
     refine     take the best that differ (poses.py) and refine them by Gauss-Newton on finer and finer images
                (refinement.py, schedule.py)
     doubt      if the best agrees less with the map than frames did before, look once more with a wider cloud
-    fuse       believe the prediction along what the image does not show (covariance.py)
+    fuse       believe the prediction along what the image does not show (covariance.py), or all of it where the map
+               does not hold the view
     judge      say whether the pose is known (being_lost.py)
 
 Particles are camera-to-world matrices `(N, 4, 4)` here, optical convention, and their noise is drawn in the tangent
@@ -25,17 +27,35 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.being_lost import NOTHING_MEASURED, Agreement, TrackJudge, TrackStatus, agreement, judge_refined
+from course_lib.beyond.being_lost import (
+    NOTHING_MEASURED,
+    Agreement,
+    TrackJudge,
+    TrackStatus,
+    agreement,
+    is_known,
+    judge_refined,
+)
 from course_lib.beyond.six_dof.covariance import (
+    PREDICTED,
     fused,
     in_world_and_body,
+    is_near,
     pose_information,
     predicted_covariance,
     with_rivals,
 )
-from course_lib.beyond.six_dof.poses import distinct, local, retract
-from course_lib.beyond.six_dof.prediction import MAX_SPREAD, START_SPREAD, WIDER, MotionPrediction, Rival
-from course_lib.beyond.six_dof.schedule import LAYERS, SECOND_LOOK, STEPS, Layer, Step, pyramid
+from course_lib.beyond.six_dof.image_motion import View, image_motion
+from course_lib.beyond.six_dof.poses import distinct, local, optical_increment, retract
+from course_lib.beyond.six_dof.prediction import (
+    MAX_SPREAD,
+    START_SPREAD,
+    WIDER,
+    MeasuredMotion,
+    MotionPrediction,
+    Rival,
+)
+from course_lib.beyond.six_dof.schedule import LAYERS, SECOND_LOOK, STEPS, SURE_LAYERS, Layer, Step, pyramid
 from course_lib.depth_mcl.likelihood import checked_image, valid_pixels
 from course_lib.depth_mcl.localizer import NoMeasurementWarning, checked_start
 from course_lib.depth_mcl.motion import TANGENT_SPACE
@@ -48,6 +68,10 @@ from course_lib.rendering.renderer import DepthRenderer
 # All chosen on the kitchen and the shipped corridor; those of rivals on walks through rooms, seeds 10,041 to 10,066.
 APART = 0.2  # of the prediction's spread: two particles nearer than this are one hypothesis
 DISTINCT = np.array([0.02, np.deg2rad(1.0)])  # metres, radians: the same for two refined poses
+SURE = np.array([0.06, np.deg2rad(3.0)])  # metres, radians: a cloud so small needs few particles
+NOTHING_BEHIND = 0.01  # the same share, up to which a pose where the measured motion leads needs no second look
+CLEAR = 0.05  # share of pixels measured behind the map up to which a pose that fits little of the map may be known
+SEEN = 0.03  # of raw score: what moving a pose along directions that the image does not show may cost
 RIVAL_WITHIN = 0.06  # of raw score: a pose that fits less is no rival of the best
 RIVAL_APART = np.array([0.15, np.deg2rad(10.0)])  # metres, radians
 
@@ -82,9 +106,10 @@ class _Found(NamedTuple):
 class AnnealedLocalizer:
     """Annealed particle filter with Gauss-Newton refinement, for a depth camera that moves freely.
 
-    n_particles: of a layer whose share is 1. seed: of all draws. second_look: layers after a doubtful look (empty:
-    none). steps: of the refinement (empty: the best particle). rivals: how many other poses are kept. fuse: joins
-    prediction and image. prediction: made from the first pose. Raises `ValueError` for bad numbers, or no layer.
+    n_particles: of a layer whose share is 1. seed: of all draws. sure_layers: where the motion was measured to within
+    `SURE`. second_look: layers after a doubtful look (empty: none). steps: of the refinement (empty: the best
+    particle). rivals: how many other poses are kept. fuse: joins prediction and image. prediction: made from the first
+    pose. image_motion: whether two images tell the motion. Raises `ValueError` for bad numbers, or no layer.
     """
 
     def __init__(
@@ -94,101 +119,151 @@ class AnnealedLocalizer:
         *,
         seed: int = 0,
         layers: tuple[Layer, ...] = LAYERS,
+        sure_layers: tuple[Layer, ...] = SURE_LAYERS,
         second_look: tuple[Layer, ...] = SECOND_LOOK,
         steps: tuple[Step, ...] = STEPS,
         rivals: int = 1,
         fuse: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]] = fused,
         prediction: Callable[[np.ndarray], MotionPrediction] = MotionPrediction,
+        image_motion: bool = True,
     ) -> None:
         for name, value, least in (("n_particles", n_particles, 1), ("seed", seed, 0), ("rivals", rivals, 0)):
             if int(value) != value or value < least:
                 raise ValueError(f"{name} must be a whole number, {least} or more; got {value!r}")
-        if not layers:
+        if not (layers and sure_layers):
             raise ValueError("at least one layer is needed: it draws the particles")
         self.renderer = renderer
         self.n_particles = int(n_particles)
         self.levels = pyramid(renderer)
-        self.layers, self.second_look, self.steps = tuple(layers), tuple(second_look), tuple(steps)
-        self.rivals, self.fuse = rivals, fuse
+        self.layers, self.sure_layers = tuple(layers), tuple(sure_layers)
+        self.second_look, self.steps = tuple(second_look), tuple(steps)
+        self.rivals, self.fuse, self.image_motion = rivals, fuse, image_motion
         self.rng = np.random.default_rng(int(seed))
         self.motion = TANGENT_SPACE
         self._new_prediction = prediction
         self._prediction: MotionPrediction | None = None
         self._judge = TrackJudge()
+        self._pose: np.ndarray | None = None  # the last estimate, and how far off it may be
         self._covariance: np.ndarray | None = None
+        self._views: list[View] | None = None  # of the last image
 
     @one_at_a_time
     def initialize(self, state0: np.ndarray) -> None:
         """Say where the camera `(6,)` is before the first frame, to within `START_SPREAD`."""
         self._prediction = self._new_prediction(optical_pose(checked_start(state0, self.renderer.scene_map)))
         self._judge = TrackJudge()
-        self._covariance = None
+        self._covariance = self._views = None
 
     @one_at_a_time
     def step(self, depth: np.ndarray, increment: np.ndarray | None = None) -> AnnealedEstimate:
         """Return where the camera is, from a depth image `(H, W)` in metres, NaN = no measurement.
 
-        increment: motion `(6,)` since the last frame by an odometer or an IMU, along and about the camera's own optical
-        axes. A frame without any measurement warns (`NoMeasurementWarning`), and its state is the prediction.
+        increment: motion `(6,)` since the last frame by an odometer or an IMU, along and about the body's axes at that
+        frame (x forward, y left, z up), metres and radians; `motion_between` gives it from two states. Raises
+        `ValueError` for another, before anything changes. A frame without any measurement warns
+        (`NoMeasurementWarning`), and its state is the prediction.
         """
         prediction = self._prediction
         if prediction is None:
             raise RuntimeError("call initialize(state0) before the first step: the filter is given its start")
         depth = checked_image(depth, self.renderer.camera)
+        measured = None if increment is None else MeasuredMotion.of_odometer(optical_increment(increment))
         for level in self.levels:
             level.measure(depth)
-        spread = prediction.spread(increment)
         if not valid_pixels(self.levels[-1].measured).any():
-            return self._not_measured(spread, increment)
-        found, spread = self._look_twice(spread, increment)
+            return self._not_measured(measured)
+        measured = self._measured_motion(measured)
+        found, spread = self._look_twice(prediction.spread(measured), measured)
         image_says = self._judge.judge_image(found.agreement)
-        found = self._fuse(found, image_says, spread, increment)
+        found, image_says = self._fuse(found, image_says, spread, measured)
         status = self._judge.judge(image_says, found.agreement, self._covariance, bool(found.rivals))
         return self._estimate(found, status)
 
-    def _look_twice(self, spread: np.ndarray, increment: np.ndarray | None) -> tuple[_Found, np.ndarray]:
+    def _measured_motion(self, told: MeasuredMotion | None) -> MeasuredMotion | None:
+        """Return the motion since the last image, of both images and what an odometer told; remember this image."""
+        before, self._views = self._views, [View.of(level.measured, level.renderer.camera) for level in self.levels[:2]]
+        if before is None or not self.image_motion:
+            return told
+        if told is not None:
+            return image_motion(before, self._views, told.motion, self._prediction.spread(told)) or told
+        return image_motion(before, self._views, self._prediction.motion, self._prediction.guess_spread())
+
+    def _look_twice(self, spread: np.ndarray, measured: MeasuredMotion | None) -> tuple[_Found, np.ndarray]:
         """Return the best pose of a cloud, or of a wider one if it agrees less than usual, and its spread."""
         not_known = 0.0 if self._covariance is None else np.sqrt(np.diag(self._covariance))
         cloud = np.minimum(np.hypot(spread, not_known), np.repeat(MAX_SPREAD, 3))
-        found = self._look(self.layers, cloud, increment)
-        if self.second_look and self._judge.doubts(found.agreement):
+        sure = measured is not None and (cloud <= np.repeat(SURE, 3)).all()
+        found = self._look(self.sure_layers if sure else self.layers, cloud, measured)
+        settled = found.agreement.through <= NOTHING_BEHIND and self._confirmed(found, spread, measured)
+        if self.second_look and self._judge.doubts(found.agreement) and not settled:
             wider = np.maximum(WIDER * cloud, np.repeat(START_SPREAD, 3))
-            again = self._look(self.second_look, wider, increment)
+            again = self._look(self.second_look, wider, measured)
             if again.score > found.score:
                 return again, wider
         return found, spread
 
-    def _fuse(self, found: _Found, image_says: TrackStatus, spread: np.ndarray, increment: np.ndarray | None) -> _Found:
-        """Move the pose back to the prediction along what the image does not show; update covariance and motion."""
-        prediction, coarse = self._prediction, self.levels[0]
-        before, predicted = prediction.origin(found.pose, spread, increment)
-        covariance = self._predicted_covariance(local(before, predicted), spread)
-        information = pose_information(coarse.measured, coarse.draw(found.pose[None])[0], coarse.renderer.camera)
+    def _confirmed(self, found: _Found, spread: np.ndarray, measured: MeasuredMotion | None) -> bool:
+        """Return whether a pose that fits the map is also where the measured motion leads."""
+        if measured is None or self._covariance is None or judge_refined(found.agreement) != "tracked":
+            return False
+        before, predicted = self._prediction.origin(found.pose, spread, measured)
+        covariance = self._predicted_covariance(local(before, predicted), spread, measured)
+        return is_known(covariance) and is_near(local(predicted, found.pose), covariance)
+
+    def _fuse(
+        self, found: _Found, image_says: TrackStatus, spread: np.ndarray, measured: MeasuredMotion | None
+    ) -> tuple[_Found, TrackStatus]:
+        """Join the pose that was found and the prediction; update covariance and motion.
+
+        Along what the image does not show, the pose moves back to the prediction. If the image does not fit the map, as
+        beyond the map's edge, the pose is carried by the measured motion, as long as it is known, and doubtful.
+        """
+        prediction, (_, middle, fine) = self._prediction, self.levels
+        before, predicted = prediction.origin(found.pose, spread, measured)
+        covariance = self._predicted_covariance(local(before, predicted), spread, measured)
+        information = pose_information(middle.measured, middle.draw(found.pose[None])[0], middle.renderer.camera)
         narrowed, gain = self.fuse(covariance, information)
-        if image_says == "tracked":
-            pose = retract(predicted, gain @ local(predicted, found.pose))
+        fits = judge_refined(found.agreement) == "tracked"
+        apart = local(predicted, found.pose)
+        if image_says == "tracked" or self._confirmed(found, spread, measured):
+            pose = retract(predicted, gain @ apart)
+            surprising = measured is not None and not is_near(apart, covariance)
+            if surprising or fine.score(fine.draw(pose[None]))[0] < found.score - SEEN:
+                pose = found.pose
             sees_all = np.linalg.matrix_rank(information, hermitian=True) == 6
             prediction.found(pose, bool(sees_all), found.rivals)
-            self._covariance = with_rivals(narrowed, pose, found.rivals)
-            return found._replace(pose=pose)
-        prediction.not_found(found.pose, spread, found.rivals)
-        believed = judge_refined(found.agreement) == "tracked"
-        self._covariance = narrowed if believed else covariance
-        return found
+            others = [*found.rivals, Rival(predicted, 0.0)] if surprising else found.rivals
+            self._covariance = with_rivals(narrowed, pose, others)
+            return found._replace(pose=pose), image_says
+        if measured is not None and not fits and is_known(covariance):
+            pose = retract(self._pose, measured.motion)
+            agrees = agreement(fine.measured, fine.draw(pose[None])[0])
+            if not agrees.contradicts:
+                prediction.found(pose, False)
+                self._covariance = covariance
+                return found._replace(pose=pose, agreement=agrees, rivals=()), "doubtful"
+        prediction.not_found(found.pose, spread, found.rivals, measured)
+        if fits and found.agreement.through > CLEAR:  # the camera may as well be where it was predicted
+            narrowed = with_rivals(narrowed, found.pose, [Rival(predicted, 0.0)])
+        self._covariance = narrowed if fits else covariance
+        return found, image_says
 
-    def _predicted_covariance(self, motion: np.ndarray, spread: np.ndarray) -> np.ndarray:
+    def _predicted_covariance(
+        self, motion: np.ndarray, spread: np.ndarray, measured: MeasuredMotion | None
+    ) -> np.ndarray:
         """Return the covariance after a motion `(6,)`; at the first image that of the start, as wide as the cloud."""
         if self._covariance is None:
             return np.diag(spread**2)
-        return predicted_covariance(self._covariance, motion, spread)
+        noise = np.diag((PREDICTED * spread) ** 2) if measured is None else measured.covariance
+        return predicted_covariance(self._covariance, motion, noise)
 
-    def _look(self, layers: tuple[Layer, ...], spread: np.ndarray, increment: np.ndarray | None) -> _Found:
+    def _look(self, layers: tuple[Layer, ...], spread: np.ndarray, measured: MeasuredMotion | None) -> _Found:
         """Return the best of the particles that went through the layers and the steps of refinement."""
 
         def merit(scores: np.ndarray, poses: np.ndarray) -> np.ndarray:
-            return scores + self._prediction.preference(poses, spread, increment)
+            return scores + self._prediction.preference(poses, spread, measured)
 
-        drawn, scores, tempered = self._anneal(layers, spread, increment)
+        drawn, scores, tempered = self._anneal(layers, spread, measured)
         all_poses, all_scores = np.concatenate(drawn), np.concatenate(scores)
         first = self.steps[0].hypotheses if self.steps else 1
         poses = all_poses[distinct(all_poses, merit(all_scores, all_poses), first, APART * spread[[0, 3]])]
@@ -213,7 +288,7 @@ class AnnealedLocalizer:
         )
 
     def _anneal(
-        self, layers: tuple[Layer, ...], spread: np.ndarray, increment: np.ndarray | None
+        self, layers: tuple[Layer, ...], spread: np.ndarray, measured: MeasuredMotion | None
     ) -> tuple[list[np.ndarray], list[np.ndarray], tuple[Tempered, ...]]:
         """Return particles, their scores and their weights, layer by layer."""
         coarse = self.levels[0]
@@ -221,7 +296,7 @@ class AnnealedLocalizer:
         for layer in layers:
             n = max(1, round(layer.particles * self.n_particles))
             if not drawn:
-                poses = self._prediction.draw(n, layer.spread * spread, self.rng, increment)
+                poses = self._prediction.draw(n, layer.spread * spread, self.rng, measured)
             else:
                 parents = drawn[-1][resample(tempered[-1].weights, self.rng, n=n)]
                 poses = retract(parents, layer.spread * spread * self.rng.standard_normal((n, 6)))
@@ -230,22 +305,25 @@ class AnnealedLocalizer:
             tempered.append(temper(scores[-1], layer.survivors * n))
         return drawn, scores, tuple(tempered)
 
-    def _not_measured(self, spread: np.ndarray, increment: np.ndarray | None) -> AnnealedEstimate:
+    def _not_measured(self, told: MeasuredMotion | None) -> AnnealedEstimate:
         """Return the prediction alone, because nothing was seen."""
         warnings.warn(
             "this frame holds no measurement between the camera's near and far planes; the pose is predicted only",
             NoMeasurementWarning,
             stacklevel=4,
         )
-        poses = self._prediction.draw(self.n_particles, spread, self.rng, increment)
+        spread = self._prediction.spread(told)
+        poses = self._prediction.draw(self.n_particles, spread, self.rng, told)
         before = self._prediction.pose
-        pose = retract(before, np.zeros(6) if increment is None else increment)
+        pose = before if told is None else retract(before, told.motion)
         self._prediction.not_found(pose, spread)
-        self._covariance = self._predicted_covariance(local(before, pose), spread)
+        self._views = None if told is not None else self._views  # else the next image shows the motion since this one
+        self._covariance = self._predicted_covariance(local(before, pose), spread, told)
         found = _Found(pose, np.nan, NOTHING_MEASURED, poses, (temper(np.zeros(len(poses)), len(poses)),))
         return self._estimate(found, "no measurement")
 
     def _estimate(self, found: _Found, status: str) -> AnnealedEstimate:
+        self._pose = found.pose
         state, particles = state_from_optical_pose(found.pose), state_from_optical_pose(found.particles)
         w = found.layers[-1].weights
         deviations = self.motion.deviations(particles, state)

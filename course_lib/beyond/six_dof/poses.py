@@ -6,7 +6,9 @@ A motion `(..., 6)` is a translation along the camera's own axes in metres, then
 
 import numpy as np
 
-from course_lib.geometry import rotation_exp, rotation_log
+from course_lib.geometry import BODY_FROM_OPTICAL, as_states, pose_matrix, rotation_exp, rotation_log
+
+MAX_INCREMENT = np.array([2.0, np.pi])  # metres, radians between two frames: a longer one has another unit (chosen)
 
 
 def retract(poses: np.ndarray, motions: np.ndarray) -> np.ndarray:
@@ -31,6 +33,38 @@ def lengths(motions: np.ndarray) -> np.ndarray:
     """Return the length of the translation in metres and the angle of the rotation in radians, `(..., 2)`."""
     motions = np.asarray(motions)
     return np.stack([np.linalg.norm(motions[..., :3], axis=-1), np.linalg.norm(motions[..., 3:], axis=-1)], axis=-1)
+
+
+def motion_between(state_a: np.ndarray, state_b: np.ndarray) -> np.ndarray:
+    """Return the motion `(..., 6)` from state a to state b: what an odometer tells `AnnealedLocalizer.step`.
+
+    (R_a' (t_b - t_a), log R_a' R_b), along and about the *body's* axes at a (x forward, y left, z up), metres and
+    radians. state_a, state_b: `(..., 6)`. Raises `ValueError` for another shape, or values that are not finite.
+    """
+    return local(pose_matrix(as_states(state_a, "state_a")), pose_matrix(as_states(state_b, "state_b")))
+
+
+def optical_increment(increment: np.ndarray) -> np.ndarray:
+    """Return an increment `(6,)` along and about the body's axes, checked, along and about the optical axes.
+
+    Raises `ValueError` for another shape, values that are not finite, or more than `MAX_INCREMENT`.
+    """
+    array = np.asarray(increment, dtype=np.float64)
+    cure = "motion_between(state_a, state_b) gives one from two states"
+    if array.shape != (6,):
+        raise ValueError(
+            f"increment must have shape (6,): x forward, y left, z up in metres, then a rotation vector in radians; "
+            f"got shape {array.shape}. {cure}"
+        )
+    if not np.isfinite(array).all():
+        raise ValueError(f"increment must be finite; got {array.tolist()}. Without an odometer's value give None")
+    if (lengths(array) > MAX_INCREMENT).any():
+        metres, radians = lengths(array)
+        raise ValueError(
+            f"increment must be at most {MAX_INCREMENT[0]:g} m and pi radians between two frames; got {metres:g} m and "
+            f"{radians:g} rad. Check its units, metres and radians; {cure}"
+        )
+    return (array.reshape(2, 3) @ BODY_FROM_OPTICAL).ravel()
 
 
 def distinct(poses: np.ndarray, scores: np.ndarray, count: int, apart: np.ndarray) -> np.ndarray:

@@ -75,6 +75,7 @@ class Step(NamedTuple):
 
 # All chosen on the kitchen and the shipped corridor.
 LAYERS = (Layer(1.0, 1.0, 0.1), Layer(0.4, 0.35, 0.1))
+SURE_LAYERS = (Layer(0.3, 1.0, 0.1),)
 SECOND_LOOK = (Layer(0.45, 1.0, 0.1),)
 STEPS = (
     Step(0, 0.25, 30), Step(0, 0.20, 20), Step(0, 0.15, 9), Step(0, 0.10, 5),

@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from course_lib.beyond.being_lost import sigmas
-from course_lib.beyond.six_dof.covariance import PREDICTED, fused, pose_information, predicted_covariance, with_rivals
+from course_lib.beyond.six_dof.covariance import (
+    carried,
+    fused,
+    is_near,
+    pose_information,
+    predicted_covariance,
+    with_rivals,
+)
 from course_lib.beyond.six_dof.poses import local, retract
 from course_lib.beyond.six_dof.prediction import Rival
 from course_lib.geometry import optical_pose
@@ -47,20 +54,19 @@ def test_an_error_is_carried_along_as_poses_carry_it(rng):
     motion = np.array([0.4, -0.2, 0.6, 0.3, -0.5, 0.2])
     small = random_covariance(rng, 1e-4)
     errors = rng.multivariate_normal(np.zeros(6), small, 20_000)
-    carried = local(retract(pose, motion), retract(retract(pose, errors), motion))
-    expected = np.cov(carried, rowvar=False)
-    got = predicted_covariance(small, motion, np.full(6, 1e-9))
+    expected = np.cov(local(retract(pose, motion), retract(retract(pose, errors), motion)), rowvar=False)
+    got = carried(small, motion)
     assert (np.abs(got - expected) < 0.05 * np.sqrt(np.outer(np.diag(expected), np.diag(expected)))).all()
     for _ in range(20):
         before, spread = random_covariance(rng, 0.1), rng.uniform(0.01, 0.3, 6)
-        bound = predicted_covariance(before, np.zeros(6), spread / PREDICTED)
+        bound = predicted_covariance(before, np.zeros(6), np.diag(spread**2))
         turn = np.linalg.qr(rng.standard_normal((6, 6)))[0]
         shared = np.linalg.cholesky(before) @ turn @ np.diag(spread)  # fully dependent errors, any way
         together = before + np.diag(spread**2) + shared + shared.T
         assert np.linalg.eigvalsh(bound - together).min() > -1e-9
-    spread, covariance = np.full(6, 0.01 / PREDICTED), 0.01**2 * np.eye(6)
+    noise = covariance = 0.01**2 * np.eye(6)
     for _ in range(9):
-        covariance = predicted_covariance(covariance, np.zeros(6), spread)
+        covariance = predicted_covariance(covariance, np.zeros(6), noise)
     assert np.sqrt(np.diag(covariance)) == pytest.approx(np.full(6, 0.1), rel=1e-6)  # ten times, not the root of it
 
 
@@ -71,6 +77,8 @@ def test_along_each_direction_the_surer_is_believed():
     assert np.sqrt(np.diag(covariance)) == pytest.approx([0.01, 0.1, 0.1, 0.2, 0.02, 0.2])
     assert np.diag(gain) == pytest.approx([1 - 0.01**2 / 0.1**2, 0, 0, 0, 1 - 0.02**2 / 0.2**2, 0])
     assert fused(covariance, information)[1] == pytest.approx(0.0, abs=1e-9), "the same image makes it no surer"
+    assert is_near(np.array([0.25, 0, 0, 0, 0, 0]), prior)
+    assert not is_near(np.array([0.0, 0.8, 0, 0, 0, 0]), prior)
     pose, small = optical_pose(np.zeros(6)), np.eye(6) * 1e-6
     there = np.array([0.4, 0, 0, 0, 0, 0])
     equal = with_rivals(small, pose, [Rival(retract(pose, there), 0.0)])

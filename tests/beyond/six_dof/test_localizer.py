@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
-from course_lib.beyond.six_dof.poses import lengths, local, retract
+from course_lib.beyond.six_dof.poses import lengths, local, motion_between, retract
 from course_lib.beyond.six_dof.prediction import START_SPREAD
 from course_lib.depth_mcl.localizer import NoMeasurementWarning
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
-from tests.rendering.shapes import SMALL, fence, rough_wall, wall
+from course_lib.rendering.scene_map import SceneMap
+from tests.rendering.shapes import SMALL, fence, furnished_room, rough_wall, wall
 
 START = np.array([-1.0, 0.3, -0.3, 0.05, 0.1, -0.4])
 
@@ -53,7 +54,7 @@ def test_slow_or_fast_it_follows_all_six(renderer, rng, step):
     for estimate in estimates:
         assert estimate.renders <= 600
         assert estimate.weights.sum() == pytest.approx(1)
-        assert len(estimate.particles) == len(estimate.weights) == 80
+        assert len(estimate.particles) == len(estimate.weights) in (60, 80)
         assert np.linalg.eigvalsh(estimate.error_covariance).min() > 0
 
 
@@ -62,7 +63,7 @@ def test_a_jump_is_found_by_the_second_look(renderer):
     true = np.array([START] * 5 + [moved(START, np.array([0.2, 0.1, 0.27, 0.0, 0.35, 0.0]))] * 4)
     depth = renderer.render(true)
     with_it, without = (
-        [off(run(renderer, depth, seed=seed, **how), true)[5, 0] for seed in range(4)]
+        [off(run(renderer, depth, seed=seed, image_motion=False, **how), true)[5, 0] for seed in range(4)]
         for how in ({}, {"second_look": ()})
     )
     assert np.median(with_it) < 0.5 * np.median(without)
@@ -74,7 +75,6 @@ def test_two_metres_off_it_says_that_it_is_lost_a_person_does_not_unsettle_it_an
     assert [e.status for e in estimates] == ["tracked"] * 4 + ["lost"] * 2
     sigma = [np.sqrt(np.trace(e.error_covariance[:3, :3])) for e in estimates]
     assert sigma[4] > 10 * sigma[3], "an image that cannot be right is no information"
-    assert sigma[5] > 1.5 * sigma[4]
     true = walk(15, 0.05, 0.03)
     depth = renderer.render(true)
     depth[5:12, :, 20:40] = 0.7
@@ -98,12 +98,53 @@ def test_two_metres_off_it_says_that_it_is_lost_a_person_does_not_unsettle_it_an
 def test_an_odometer_carries_it_where_motion_is_sudden(renderer):
     """Steps of half a metre to and fro: going on as before is the wrong prediction every time."""
     true = np.array([START, moved(START, np.array([0.3, 0.0, 0.4, 0.0, 0.5, 0.0]))] * 5)
-    depth, poses = renderer.render(true), optical_pose(true)
-    localizer = AnnealedLocalizer(renderer, seed=1, second_look=())
+    depth = renderer.render(true)
+    localizer = AnnealedLocalizer(renderer, seed=1, second_look=(), image_motion=False)
     localizer.initialize(START)
     localizer.step(depth[0])
-    estimates = [localizer.step(d, local(a, b)) for d, a, b in zip(depth[1:], poses, poses[1:], strict=False)]
+    told = motion_between(true[:-1], true[1:])
+    estimates = [localizer.step(d, increment) for d, increment in zip(depth[1:], told, strict=True)]
     assert (off(estimates, true[1:]) < [0.02, 0.01]).all()
+
+
+@pytest.mark.parametrize("increment", [np.full(6, np.nan), np.eye(4), np.full(6, 100.0)])
+def test_an_increment_that_is_none_changes_nothing(renderer, increment):
+    """On a blank frame and on another: the steps after it give the bytes that they give without it."""
+    depth = renderer.render(walk(3))
+    blank = np.full(SMALL.shape, np.nan)
+    states = []
+    for disturbed in (False, True):
+        localizer = AnnealedLocalizer(renderer, n_particles=40, seed=1)
+        localizer.initialize(START)
+        localizer.step(depth[0])
+        for image in (blank, depth[1]) if disturbed else ():
+            with pytest.raises(ValueError, match="increment"):
+                localizer.step(image, increment)
+        states.append([localizer.step(image).state for image in depth[1:]])
+    assert np.array_equal(*states)
+
+
+def test_beyond_the_map_s_edge_images_carry_it_doubtful_and_back(renderer, rng):
+    """It turns from what the map holds to what it does not, and back; its covariance grows meanwhile."""
+    scene_map = furnished_room()
+    left = scene_map.vertices[scene_map.faces].mean(axis=1)[:, 1] > 0.0
+    turn = np.concatenate([np.linspace(0.6, -0.8, 8), np.full(2, -0.8), np.linspace(-0.8, 0.6, 8)])
+    true = np.tile([-1.0, 0.5, -0.5, 0.0, 0.05, 0.0], (len(turn), 1))
+    true[:, 5] = turn
+    true[:, 0] += 0.3 * np.sin(3 * turn)
+    depth = noisy(renderer.render(true), rng)
+    with DepthRenderer(SceneMap(scene_map.vertices, scene_map.faces[left]), SMALL) as opened:
+        estimates, blind = (run(opened, depth, true[0], image_motion=by_images) for by_images in (True, False))
+    statuses, errors = [e.status for e in estimates], off(estimates, true)
+    assert (errors < [0.15, 0.1]).all()
+    assert "lost" not in statuses
+    assert set(statuses[7:11]) == {"doubtful"}
+    assert statuses[-1] == "tracked"
+    sigma = np.array([np.sqrt(np.trace(e.error_covariance[:3, :3])) for e in estimates])
+    assert sigma[10] > 2 * sigma[2]
+    assert sigma[-1] < sigma[10]
+    assert (errors[:, 0] < 4 * sigma).all()
+    assert {e.status for e in blind[7:11]} == {"lost"}
 
 
 def test_before_a_bare_wall_it_soon_says_that_it_does_not_know_where(rng):
