@@ -27,7 +27,7 @@ from course_lib.classroom.model_answers import model_solution_path
 from course_lib.classroom.nbgrader_course import write_course
 from course_lib.classroom.rubric import rubric
 from course_lib.classroom.student_copies import solved_notebook, write_copies
-from course_lib.classroom.templates import template
+from course_lib.classroom.templates import PAGES
 from course_lib.files import staging_dir
 from course_lib.paths import REPOSITORY
 
@@ -106,7 +106,7 @@ def write_readmes(made: Path, assignments: list[Assignment], seed: int) -> None:
     names, canary = [assignment.name for assignment in assignments], canary_of(seed)
     for folder, name in READMES.items():
         path = made / folder / ("HANDOUT.md" if folder == "student" else "README.md")
-        path.write_text(template(name).render(names=", ".join(names), canary=canary), encoding="utf-8")
+        path.write_text(PAGES.get_template(name).render(names=", ".join(names), canary=canary), encoding="utf-8")
     (made / "teacher" / "grading").mkdir()
     write_json(made / "teacher" / "grading" / "seed.json", {"seed": seed, "canary": canary})
     write_json(made / MARKER, {"made_by": MADE_BY, "version": 2, "lessons": names})

@@ -14,7 +14,7 @@ from course_lib.classroom.grading import grade_folder
 from course_lib.classroom.handout import canary_of
 from course_lib.classroom.judge import Graded, Judged
 from course_lib.classroom.pages import feedback_name, write_results
-from course_lib.classroom.results import Entry, what_counts
+from course_lib.classroom.results import Entry, table_text, what_counts
 from course_lib.classroom.sandbox import Limits, SandboxError
 from course_lib.classroom.submissions import Submission, read_roster
 from course_lib.cli import main
@@ -81,7 +81,7 @@ def test_the_newest_version_counts_and_what_is_not_read_is_named(graded):
 
 def test_the_class_exercise_by_exercise_with_the_commonest_hint(graded):
     row = next(row for row in graded[0].per_exercise() if row["number"] == "06.1")
-    assert (row["right"], row["wrong"], row["most"]) == (1, 1, 2)
+    assert (row["statuses"]["right"], row["statuses"]["wrong"], row["most"]) == (1, 1, 2)
     assert row["hint"][1] == 1
 
 
@@ -117,9 +117,7 @@ def test_what_a_stopping_statement_says_of_the_inputs_reaches_the_teacher_alone(
 )
 def test_lessons_that_nobody_set_have_no_column(handed_in, asked, lessons):
     judged = [
-        Entry(
-            Submission(who, Path(who)), Judged(names, [Graded(f"{name}.1", "right", 2, 2, "Right.") for name in names])
-        )
+        Entry(Submission(who, Path(who)), Judged(names, [Graded(f"{name}.1", "right", 2, "Right.") for name in names]))
         for who, names in handed_in.items()
     ]
     entries, not_read = what_counts(judged, asked)
@@ -225,7 +223,7 @@ def test_results_never_lie_among_the_submissions(tmp_path, capsys):
 
 @pytest.mark.parametrize("cell", ["=1+1", "+1", "-1", "@x", "\t=1", " =1", "\uff1d1", "\ufe661", "\uff0b1"])
 def test_no_cell_is_a_formula_and_every_text_is_quoted(cell):
-    text = grading.table_text([[cell, 'a;b,"c"']])
+    text = table_text([[cell, 'a;b,"c"']])
     assert text.startswith("\ufeff\"'")
     assert next(csv.reader(io.StringIO(text[1:]))) == [f"'{cell}", 'a;b,"c"']
 
