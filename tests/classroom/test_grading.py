@@ -178,24 +178,15 @@ def test_points_by_hand_are_asked_for_and_added(graded, library):
     (out / "by_hand.csv").unlink()
 
 
-def test_what_was_judged_is_not_judged_again(graded, library, monkeypatch):
+def test_a_run_that_was_ended_goes_on_and_what_was_judged_is_not_judged_again(graded, library, monkeypatch):
     results, folder, out = graded
-    monkeypatch.setattr(grading.FORKS, "Process", lambda *given, **named: pytest.fail("judged again"))
-    again = grade_folder(folder, out, SEED, Limits(), lessons=LESSONS)
-    assert [one.judged for one in again.entries] == [one.judged for one in results.entries]
-
-
-def test_a_run_that_was_ended_goes_on(graded, library, monkeypatch):
-    _, folder, out = graded
-    lost = sorted((out / "judged").glob("*.json"))[0]
-    kept = json.loads(lost.read_text(encoding="utf-8"))
-    lost.unlink()
+    sorted((out / "judged").glob("*.json"))[0].unlink()
     judged = []
     process = grading.FORKS.Process
     monkeypatch.setattr(grading.FORKS, "Process", lambda *a, **k: judged.append(k["args"][0]) or process(*a, **k))
-    grade_folder(folder, out, SEED, Limits(), lessons=LESSONS)
+    again = grade_folder(folder, out, SEED, Limits(), lessons=LESSONS)
     assert len(judged) == 1
-    assert json.loads(lost.read_text(encoding="utf-8")) == kept
+    assert [one.judged for one in again.entries] == [one.judged for one in results.entries]
 
 
 def test_nothing_runs_without_walls_unless_it_is_trusted(tmp_path, monkeypatch, capsys):

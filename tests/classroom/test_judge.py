@@ -1,13 +1,10 @@
 """One judge: the same points by every way, for honest notebooks of every form, and sentences that help."""
 
-import json
-from dataclasses import asdict
-
 import nbformat
 import pytest
 
 from course_lib.classroom.assignment_cells import function_names
-from course_lib.classroom.judge import Settings, from_json, judge, lessons_of
+from course_lib.classroom.judge import Settings, judge, lessons_of
 from course_lib.classroom.points import earned
 from course_lib.lessons.kit.exercises import find_exercise
 from tests.classroom.handed_in import assignment_of, handed_in, mistaken, solved
@@ -29,7 +26,6 @@ def test_the_model_answers_have_all_points_and_an_untouched_lesson_none(judged):
         assert found.lessons == ["06"]
         assert sum(one.points for one in found.answers) == points
         assert sum(one.most for one in found.answers) == 16
-        assert from_json(json.loads(json.dumps(asdict(found)))) == found
 
 
 @pytest.mark.parametrize("name", ["00", "P1", "P2"])

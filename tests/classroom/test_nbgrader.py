@@ -1,6 +1,5 @@
 """nbgrader's own generate, autograde and feedback: the judge gives the points, whatever a student's notebook says."""
 
-import json
 import sqlite3
 import warnings
 
@@ -58,10 +57,6 @@ def test_five_students_through_nbgraders_own_steps(course):
     api, right = nbgrader_api(course), solved("06")
     made = api.generate_assignment("06")
     assert made["success"], made
-    released = nbformat.read(course / "release" / "06" / "06.ipynb", as_version=4)
-    for cell in released.cells:
-        if tag_of(cell) == "exercise":
-            assert cell.source.rstrip().endswith("...")
     words = teachers_words(SEED, canary_of(SEED)) | solutions([assignment_of("06")])
     assert find_leaks(course / "release", words) == []
     odd = right | {"06.1": f"%%time\ntable = {{}}\ntable.update(one=1)\n{right['06.1']}"}
@@ -83,4 +78,3 @@ def test_five_students_through_nbgraders_own_steps(course):
     feedback = (course / "feedback" / "mistaken" / "06" / "06.html").read_text(encoding="utf-8")
     assert "06.2: " in feedback
     assert find_leaks(course / "feedback", teachers_words(SEED, canary_of(SEED))) == []
-    assert json.loads((course.parent / "grading" / "seed.json").read_text())["seed"] == SEED

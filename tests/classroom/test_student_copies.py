@@ -65,10 +65,6 @@ def test_every_link_picture_and_scene_of_the_folder_is_in_it(whole, two):
         assert [(page.name, target) for page, target in found if not (page.parent / target).is_file()] == []
 
 
-def test_lessons_lead_to_each_other(whole):
-    assert "05_particles_and_motion.ipynb" in {target for page, target in links_of(whole) if page.name[:2] == "06"}
-
-
 def test_a_lesson_that_is_not_handed_out_is_no_link(two):
     readme = (two / "README.md").read_text(encoding="utf-8")
     assert "[06 · Likelihood and weights](06_likelihood_and_weights.ipynb)" in readme
@@ -114,11 +110,6 @@ def test_no_model_answer_is_in_the_folder_and_a_planted_one_is_found(whole, tmp_
     found = find_leaks(tmp_path, answers)
     assert len(found) == len(ASSIGNMENTS[6].exercises())
     assert found[0].startswith("06_likelihood_and_weights.ipynb holds the model answer of ")
-
-
-def test_what_is_said_of_solutions_goes():
-    text = "Done.<!-- solutions --> The\n  solution is below.<!-- /solutions -->\nMore."
-    assert student_text(text) == "Done.\nMore."
 
 
 def test_links_to_other_sites_and_within_the_page_stay():
