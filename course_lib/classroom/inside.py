@@ -98,7 +98,8 @@ def read_submission(path: Path) -> tuple[list[Cell], dict]:
         code = [(number, cell) for number, cell in enumerate(cells, start=1) if cell["cell_type"] == "code"]
         sources = [(f"cell {number}", "".join(cell["source"])) for number, cell in code]
         numbers = [str(cell["metadata"].get("exercise", "")) for _, cell in code]
-        printed = [_printed(cell) for _, cell in code]
+        outputs = [[one for one in cell.get("outputs", []) if one.get("output_type") == "stream"] for _, cell in code]
+        printed = ["".join("".join(one["text"]) for one in some)[:20_000] for some in outputs]
     except UnicodeDecodeError:
         raise ValueError("is not UTF-8 text") from None
     except (ValueError, RecursionError, KeyError, TypeError, AttributeError) as error:
@@ -106,11 +107,6 @@ def read_submission(path: Path) -> tuple[list[Cell], dict]:
     tries = {n: int(found[-1]) for n, text in zip(numbers, printed, strict=True) if n and (found := TRY.findall(text))}
     recalled = [found for text in printed for found in RECALLED.findall(text)]
     return sources, {"exercises": sorted(set(numbers) - {""}), "tries": tries, "recalled": recalled}
-
-
-def _printed(cell: dict) -> str:
-    outputs = [one for one in cell.get("outputs", []) if one.get("output_type") == "stream"]
-    return "".join("".join(one["text"]) for one in outputs)[:20_000]
 
 
 def digest(function: ast.FunctionDef) -> str:

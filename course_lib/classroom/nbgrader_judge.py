@@ -29,7 +29,7 @@ from course_lib.classroom.assignment_cells import function_names
 from course_lib.classroom.grading import prepare, require_unseen
 from course_lib.classroom.judge import Settings, judge
 from course_lib.classroom.sandbox import Limits
-from course_lib.classroom.student_copies import write_notebook
+from course_lib.classroom.student_copies import write
 from course_lib.files import temporary_folder
 
 
@@ -44,7 +44,7 @@ class Judge(NbGraderPreprocessor):
             require_unseen(Path(self.seed_file))
         seed = json.loads(Path(self.seed_file).read_text(encoding="utf-8"))["seed"]
         with temporary_folder() as folder:
-            write_notebook(folder / "submission.ipynb", nb)
+            write(folder / "submission.ipynb", nb)
             settings = Settings(function_names(), seed, Path(_library(self.trust).name), trust=self.trust, scores=True)
             judged = judge(folder / "submission.ipynb", settings)
         given = {one.number.replace(".", "-"): one for one in judged.answers}

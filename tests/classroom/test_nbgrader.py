@@ -1,5 +1,6 @@
 """nbgrader's own generate, autograde and feedback: the judge gives the points, whatever a student's notebook says."""
 
+import json
 import sqlite3
 import warnings
 
@@ -7,9 +8,10 @@ import nbformat
 import pytest
 
 from course_lib.classroom.assignment_cells import tag_of
-from course_lib.classroom.handout import canary_of, write_json
+from course_lib.classroom.handout import canary_of
 from course_lib.classroom.leaks import find_leaks, solutions, teachers_words
 from course_lib.classroom.nbgrader_course import write_course
+from course_lib.classroom.student_copies import write
 from tests.classroom.handed_in import assignment_of, mistaken, solved
 
 SEED = 31_415_926_535
@@ -27,8 +29,7 @@ print(16)
 def course(library, tmp_path_factory):
     folder = tmp_path_factory.mktemp("handout")
     write_course(folder / "nbgrader", [assignment_of("06")], canary_of(SEED))
-    (folder / "grading").mkdir()
-    write_json(folder / "grading" / "seed.json", {"seed": SEED})
+    write(folder / "grading" / "seed.json", json.dumps({"seed": SEED}))
     return folder / "nbgrader"
 
 
