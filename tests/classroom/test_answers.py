@@ -19,10 +19,9 @@ def there_and_back(value):
     return decode(json.loads(json.dumps(encode(value))))
 
 
-@pytest.mark.parametrize(
-    "value",
-    [None, True, 3, -(2**63), 0.1, float("inf"), float("-inf"), "text", ..., (1, (2.0, [3, "a"]), []), [[1, 2], [3]]],
-)
+@pytest.mark.parametrize("value", [
+    None, True, 3, -(2**63), 0.1, float("inf"), float("-inf"), "text", ..., (1, (2.0, [3, "a"]), []), [[1, 2], [3]],
+])  # fmt: skip
 def test_plain_values_come_back_as_they_are(value):
     found = there_and_back(value)
     assert found == value

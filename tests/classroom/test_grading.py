@@ -22,7 +22,6 @@ from tests.classroom.handed_in import handed_in, mistaken, solved
 from tests.notebooks.driven_lab import require_chromium, serious_findings
 
 SEED = 5_000_017
-ROSTER = "name,id\nalice,7\nbob,8\ncarol,9\n"
 LESSONS = ["06", "P1"]
 SPY = """import pickle, sys
 def spied():
@@ -46,14 +45,12 @@ def graded(library, tmp_path_factory):
     handed_in(folder / "alice" / "P1.ipynb", "P1", {})
     handed_in(folder / "bob_06_v1.ipynb", "06", {})
     os.utime(folder / "bob_06_v1.ipynb", (1, 1))
-    handed_in(
-        folder / "bob_06_v2.ipynb", "06", answers | {"06.1": f"# {canary_of(3)}\n{mistaken('06.1')}", "06.2": SPY}
-    )
+    wrong = {"06.1": f"# {canary_of(3)}\n{mistaken('06.1')}", "06.2": SPY}
+    handed_in(folder / "bob_06_v2.ipynb", "06", answers | wrong)
     (folder / "dora_06.ipynb").write_text("{", encoding="utf-8")
-    (folder / "class.csv").write_text(ROSTER, encoding="utf-8")
-    roster = read_roster(folder / "class.csv")
-    (folder / "class.csv").unlink()
-    results = grade_folder(folder, out, SEED, Limits(), jobs=2, roster=roster, lessons=LESSONS)
+    roster = folder.with_name("class.csv")
+    roster.write_text("name,id\nalice,7\nbob,8\ncarol,9\n", encoding="utf-8")
+    results = grade_folder(folder, out, SEED, Limits(), jobs=2, roster=read_roster(roster), lessons=LESSONS)
     write_results(results, out)
     return results, folder, out
 
@@ -106,15 +103,12 @@ def test_what_a_stopping_statement_says_of_the_inputs_reaches_the_teacher_alone(
     assert pages[1].count("the inputs are") == 1
 
 
-@pytest.mark.parametrize(
-    ("handed_in", "asked", "lessons"),
-    [
-        ({"alice": ["06"], "bob": ["06", "13"]}, [], ["06"]),
-        ({"alice": ["06"], "bob": ["06", "13"]}, ["06", "13"], ["06", "13"]),
-        ({"alice": ["06"], "bob": ["13"]}, [], ["06", "13"]),
-        ({"alice": ["06", "07"]}, ["07", "08"], ["07"]),
-    ],
-)
+@pytest.mark.parametrize(("handed_in", "asked", "lessons"), [
+    ({"alice": ["06"], "bob": ["06", "13"]}, [], ["06"]),
+    ({"alice": ["06"], "bob": ["06", "13"]}, ["06", "13"], ["06", "13"]),
+    ({"alice": ["06"], "bob": ["13"]}, [], ["06", "13"]),
+    ({"alice": ["06", "07"]}, ["07", "08"], ["07"]),
+])  # fmt: skip
 def test_lessons_that_nobody_set_have_no_column(handed_in, asked, lessons):
     judged = [
         Entry(Submission(who, Path(who)), Judged(names, [Graded(f"{name}.1", "right", 2, "Right.") for name in names]))

@@ -4,15 +4,13 @@ import json
 import sqlite3
 import warnings
 
-import nbformat
 import pytest
 
-from course_lib.classroom.assignment_cells import tag_of
 from course_lib.classroom.handout import canary_of
 from course_lib.classroom.leaks import find_leaks, solutions, teachers_words
 from course_lib.classroom.nbgrader_course import write_course
 from course_lib.classroom.student_copies import write
-from tests.classroom.handed_in import assignment_of, mistaken, solved
+from tests.classroom.handed_in import assignment_of, handed_in, mistaken, solved
 
 SEED = 31_415_926_535
 FORGED = """import IPython, sys
@@ -43,16 +41,6 @@ def nbgrader_api(course):
     return NbGraderAPI(CourseDirectory(config=config), config=config)
 
 
-def submit(course, student, answers):
-    notebook = nbformat.read(course / "release" / "06" / "06.ipynb", as_version=4)
-    for cell in notebook.cells:
-        if tag_of(cell) == "exercise" and cell.metadata["exercise"] in answers:
-            cell.source = answers[cell.metadata["exercise"]].replace("{stub}", cell.source)
-    path = course / "submitted" / student / "06" / "06.ipynb"
-    path.parent.mkdir(parents=True)
-    nbformat.write(notebook, path)
-
-
 @pytest.mark.slow
 def test_five_students_through_nbgraders_own_steps(course):
     api, right = nbgrader_api(course), solved("06")
@@ -66,7 +54,9 @@ def test_five_students_through_nbgraders_own_steps(course):
         "mistaken": right | {"06.2": mistaken("06.2")},
     }  # fmt: skip
     for student, answers in students.items():
-        submit(course, student, answers)
+        handed_in(
+            course / "submitted" / student / "06" / "06.ipynb", "06", answers, course / "release" / "06" / "06.ipynb"
+        )
         for step in (api.autograde, api.generate_feedback):
             done = step("06", student)
             assert done["success"], done
