@@ -8,7 +8,6 @@ import base64
 import functools
 import io
 import json
-import re
 
 import numpy as np
 
@@ -16,8 +15,6 @@ MAX_DEPTH = 8  # rows within rows
 MAX_ROW = 100_000  # values in one list or tuple
 MAX_TEXT = 10_000  # characters
 MAX_ARRAY = 4 << 20  # bytes
-FORMULA = re.compile(r"^[\s\u200b\ufeff]*[=+\-@\uff1d\ufe66\uff0b\uff0d\uff20\t\r]")
-"""A spreadsheet takes a cell that begins so for a formula; some take full-width signs too."""
 KINDS = "biufc"  # of NumPy's types: numbers and booleans
 
 
@@ -98,8 +95,3 @@ def load(line: bytes) -> dict:
 def one_line(text: object, length: int = 600) -> str:
     """Return a stranger's text as one line without control characters."""
     return "".join(letter if letter.isprintable() else " " for letter in str(text)[: 2 * length]).strip()[:length]
-
-
-def harmless(cell: object) -> object:
-    """Return a cell that no spreadsheet takes for a formula: an apostrophe stands before its sign."""
-    return f"'{cell}" if isinstance(cell, str) and FORMULA.match(cell) else cell

@@ -1,6 +1,8 @@
 """A lesson or a project as the person who hands it out sees it: its exercises, each with its cells by their tags."""
 
+import ast
 import copy
+import functools
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,18 +12,17 @@ from course_lib.paths import numbered_paths
 
 
 class AssignmentError(ValueError):
-    """A lesson that is not there, or whose cells are not those of an exercise; the message names it."""
+    """A lesson that is not there, or a cell that is missing or is not what its tag says; the message names it."""
 
 
 class ExerciseCells(NamedTuple):
-    """The source of one exercise's cells. title: without number and level. solution: None for a project's stage."""
+    """The source of one exercise's cells. title: without number and level. solution: "" for a project's stage."""
 
     number: str
     title: str
     task: str
-    stub: str
     hints: str
-    solution: str | None
+    solution: str
 
 
 class Assignment(NamedTuple):
@@ -55,18 +56,33 @@ class Assignment(NamedTuple):
                 told = f"{self.path.name}: exercise {number} has no cell tagged {', '.join(sorted(missing))}"
                 raise AssignmentError(told)
             title = cells["task"].splitlines()[0].removeprefix(f"### {number}").split("·")[0].strip()
-            parts = (cells["task"], cells["exercise"], cells["hint"], cells.get("solution"))
+            parts = (cells["task"], cells["hint"], cells.get("solution", ""))
             exercises.append(ExerciseCells(number, title, *parts))
         return exercises
 
-    def submission(self) -> str | None:
-        """Return the stub of the function that a project is scored by; None for a lesson."""
-        return next((cell.source for cell in self.stored.cells if tag_of(cell) == "submission"), None)
+    def functions(self) -> dict[str, str]:
+        """Return the function that each exercise asks for, "06.1" -> "raw_score", and a project, "P1" -> "localize"."""
+        stubs = [cell for cell in self.stored.cells if tag_of(cell) in ("exercise", "submission")]
+        return {cell.metadata.get("exercise", self.name): function_name(cell.source) for cell in stubs}
 
 
 def tag_of(cell: nbformat.NotebookNode) -> str:
     """Return what a cell is to its exercise: task, exercise (the stub), check, hint, solution, ...; or ""."""
     return next(iter(cell.metadata.get("tags", [])), "")
+
+
+def function_name(source: str) -> str:
+    """Return the name of the function that a stub's or a solution's cell defines. Raises `AssignmentError`."""
+    functions = [node.name for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)]
+    if not functions:
+        raise AssignmentError(f"a stub or a solution defines a function; this cell defines none: {source[:60]!r}")
+    return functions[-1]
+
+
+@functools.cache
+def function_names() -> dict[str, str]:
+    """Return the function that each exercise and project of the course asks for: "06.1" -> "raw_score"."""
+    return {number: name for one in read_assignments() for number, name in one.functions().items()}
 
 
 def read_assignments(names: list[str] | None = None) -> list[Assignment]:

@@ -16,22 +16,20 @@ import stat
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import asdict
 from pathlib import Path
-from typing import NamedTuple
 
 from course_lib.classroom.answers import AnswerFormatError, one_line
-from course_lib.classroom.assignment_cells import Assignment, read_assignments
-from course_lib.classroom.judge import Judged, from_json, judge
-from course_lib.classroom.model_answers import function_name
+from course_lib.classroom.assignment_cells import function_names, read_assignments
+from course_lib.classroom.judge import Judged, Settings, from_json, judge
 from course_lib.classroom.results import Entry, Results, points_by_hand, what_counts
-from course_lib.classroom.sandbox import SYSTEM, Limits, Sandbox, SandboxError, library_copy, require_walls
+from course_lib.classroom.sandbox import SYSTEM, Limits, Sandbox, SandboxError, copy_library, require_walls
 from course_lib.classroom.self_test import self_test
 from course_lib.classroom.submissions import Roster, Submission, collect
 from course_lib.files import atomic_write, temporary_folder
-from course_lib.paths import REPOSITORY
+from course_lib.paths import REPOSITORY, numbered_paths
 
 FILE_ANSWERS, FILE_SECONDS = 4, 60.0
 """A file has the full time of so many answers, as most lessons have, and so many seconds to be read and compared."""
@@ -45,25 +43,9 @@ FORKS.set_forkserver_preload(["course_lib.classroom.judge"])
 CANARY = re.compile(rb"not-for-students-[0-9a-f]{12}")
 
 
-class Settings(NamedTuple):
-    """How every file of a folder is judged. functions: of each exercise and project, "06.1" -> "raw_score"."""
-
-    functions: dict[str, str]
-    seed: int
-    library: Path
-    limits: Limits
-    trust: bool
-    scores: bool
-
-    @property
-    def seconds(self) -> float:
-        """Return the time that one file has."""
-        return SCORE_SECONDS if self.scores else FILE_SECONDS + FILE_ANSWERS * self.limits.seconds
-
-
 def grade_folder(
     folder: Path, out: Path, seed: int, limits: Limits, jobs: int = 1, trust: bool = False, scores: bool = False,
-    roster: Roster | None = None, lessons: Sequence[str] = (),
+    roster: Roster | None = None, lessons: list[str] | None = None,
     progress: Callable[..., Iterable] = lambda found, total: found,
 ) -> Results:  # fmt: skip
     """Grade all submissions in a folder. `progress` wraps the iterator over results and is given its length.
@@ -71,37 +53,29 @@ def grade_folder(
     lessons: what was set; without them, what two students handed in. Raises `AssignmentError` for a lesson that is not
     there, and `SandboxError` if this machine has no walls and `trust` is not given.
     """
-    roster, assignments = roster or Roster(), read_assignments()
-    asked = [one.name for one in read_assignments(list(lessons))] if lessons else []
-    found, not_read = collect(folder, {one.name: one.path.stem for one in assignments}, roster)
-    with tried_library(limits, trust) as (library, tried, machine):
+    roster = roster or Roster()
+    asked = [one.name for one in read_assignments(lessons)] if lessons else []
+    found, not_read = collect(folder, {name: path.stem for name, path in numbered_paths().items()}, roster)
+    with temporary_folder() as library:
+        tried, machine = prepare(library, limits, trust)
         (out / "judged").mkdir(parents=True, exist_ok=True)
-        settings = Settings(function_names(assignments), seed, library, limits, trust, scores)
+        settings = Settings(function_names(), seed, library, limits, trust, scores)
         judged = sorted(progress(_all(found, out / "judged", settings, jobs), len(found)), key=lambda e: e.submission)
     entries, more = what_counts(judged, asked)
     by_hand = points_by_hand(out / "by_hand.csv", entries)
     return Results(entries, sorted([*not_read, *more]), roster, seed, tried, machine, asked, by_hand)
 
 
-def function_names(assignments: list[Assignment]) -> dict[str, str]:
-    """Return the function that each exercise asks for, "06.1" -> "raw_score", and each project, "P1" -> "localize"."""
-    stubs = {one.number: one.stub for each in assignments for one in each.exercises()}
-    stubs |= {each.name: each.submission() for each in assignments if each.is_project}
-    return {number: function_name(stub) for number, stub in stubs.items()}
+def prepare(library: Path, limits: Limits, trust: bool) -> tuple[list[str], str]:
+    """Copy the library into an empty folder. Return what was tried against the walls in vain, and what this machine is.
 
-
-@contextlib.contextmanager
-def tried_library(limits: Limits, trust: bool) -> Iterator[tuple[Path, list[str], str]]:
-    """Yield the library for the sandbox, what was tried against the walls in vain, and what this machine is.
-
-    Raises `SandboxError` if the walls do not hold, unless `trust` is given.
+    Raises `SandboxError` if the walls do not hold. With `trust`, nothing is tried.
     """
     if not trust:
         require_unseen(REPOSITORY)
         require_walls()
-    with temporary_folder() as scratch, library_copy(scratch) as library:
-        tried, machine = ([], "") if trust else self_test(library, limits)
-        yield library, tried, machine
+    copy_library(library)
+    return ([], "") if trust else self_test(library, limits)
 
 
 def require_unseen(*places: Path) -> None:
@@ -129,8 +103,9 @@ def _one(one: Submission, judged: Path, settings: Settings, spent: Counter[str])
     suffix = one.path.suffix.lower()
     key = repr((one.guess, settings._replace(library=Path()), suffix)).encode()
     path = judged / f"{hashlib.sha256(key + content).hexdigest()[:32]}.json"
+    seconds = SCORE_SECONDS if settings.scores else FILE_SECONDS + FILE_ANSWERS * settings.limits.seconds
     if not path.is_file():
-        if spent[one.student] > STUDENT_FILES * settings.seconds:
+        if spent[one.student] > STUDENT_FILES * seconds:
             told = f"the student's other files took {spent[one.student]:.0f} seconds"
             return Entry(one, Judged(why=f"was not judged yet, because {told}. Grade the folder again to go on"))
         began = time.monotonic()
@@ -139,11 +114,11 @@ def _one(one: Submission, judged: Path, settings: Settings, spent: Counter[str])
         copy.write_bytes(content)
         process = FORKS.Process(target=judge_to_file, args=(one._replace(path=copy), path, settings))
         process.start()
-        process.join(settings.seconds)
+        process.join(seconds)
         if process.is_alive():
             process.kill()
             process.join()
-            keep_no_verdict(path, f"{settings.seconds:g} seconds")
+            keep_no_verdict(path, f"{seconds:g} seconds")
         spent[one.student] += time.monotonic() - began
     try:
         found = from_json(json.loads(path.read_text(encoding="utf-8")))
@@ -165,9 +140,8 @@ def judge_to_file(one: Submission, path: Path, settings: Settings) -> None:
     """Judge one submission and write the result. The process may take so much memory, and no more."""
     # The soft limit alone, because the sandbox sets its own limits, which may be higher.
     resource.setrlimit(resource.RLIMIT_AS, (JUDGE_MEMORY_MB << 20, resource.getrlimit(resource.RLIMIT_AS)[1]))
-    functions, seed, library, limits, trust, scores = settings
     try:
-        judged = judge(one.path, functions, seed, library, limits, one.guess, trust, scores)
+        judged = judge(one.path, settings, one.guess)
         judged.stopped = stopped_statements(judged, one.path, settings)
         atomic_write(path, json.dumps(asdict(judged)))
     except MemoryError:
@@ -187,11 +161,12 @@ def stopped_statements(judged: Judged, path: Path, settings: Settings) -> list[s
     """
     stops = re.compile(r"cell \d+, line|the file, line")
     numbers = [one.number for one in judged.answers if any(stops.match(remark) for remark in one.remarks)]
+    if not numbers:
+        return []
     found: list[str] = []
-    if numbers:
-        with contextlib.suppress(AnswerFormatError):
-            with Sandbox(path, settings.library, settings.limits, settings.trust) as box:
-                for number in numbers:
-                    head = box.run(number, settings.functions[number], pickle.dumps([])).head
-                    found += [one_line(text) for text in head.get("problems", [])]
+    with contextlib.suppress(AnswerFormatError):
+        with Sandbox(path, settings.library, settings.limits, settings.trust) as box:
+            for number in numbers:
+                head = box.run(number, settings.functions[number], pickle.dumps([])).head
+                found += [one_line(text) for text in head.get("problems", [])]
     return list(dict.fromkeys(found))[:MAX_STOPPED]

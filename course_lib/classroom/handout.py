@@ -1,12 +1,4 @@
-"""A class's folder, made at once: what students get, and what is the teacher's alone.
-
-    OUT/student/            lessons and projects without their solutions
-    OUT/course.zip          the whole course for students, if asked for
-    OUT/teacher/solutions/  the model answers
-    OUT/teacher/rubric/     a page for each lesson
-    OUT/teacher/grading/    the secret seed
-    OUT/teacher/nbgrader/   a course for nbgrader
-    OUT/teacher/solved/     the lessons with the model answers in their stubs, if asked for
+"""A class's folder, made at once: what students get, and what is the teacher's alone (`templates/teacher.md` lists it).
 
 The folder appears only when it is whole and nothing of the teacher's is found in what students get. The same seed makes
 the same folder, letter by letter.
@@ -26,8 +18,8 @@ from course_lib.classroom.leaks import LeakError, find_leaks, solutions, teacher
 from course_lib.classroom.model_answers import model_solution_path
 from course_lib.classroom.nbgrader_course import write_course
 from course_lib.classroom.rubric import rubric
-from course_lib.classroom.student_copies import solved_notebook, write_copies
-from course_lib.classroom.templates import template
+from course_lib.classroom.student_copies import solved_notebook, write, write_copies
+from course_lib.classroom.templates import PAGES
 from course_lib.files import staging_dir
 from course_lib.paths import REPOSITORY
 
@@ -83,15 +75,13 @@ def make_handout(
 
 def write_teachers_pages(teacher: Path, assignment: Assignment, canary: str) -> None:
     """Write the solutions and the rubric of one lesson."""
-    for name in ("solutions", "rubric"):
-        (teacher / name).mkdir(parents=True, exist_ok=True)
     if assignment.is_project:
         text = model_solution_path(assignment.name).read_text(encoding="utf-8")
     else:
         sources = [cell.source for cell in assignment.stored.cells if tag_of(cell) == "solution"]
         text = "\n\n\n".join([f"# {assignment.title}\n\n{imports_of(assignment)}", *sources]) + "\n"
-    (teacher / "solutions" / f"{assignment.name}.py").write_text(f"# {canary}\n{text}", encoding="utf-8")
-    (teacher / "rubric" / f"{assignment.name}.md").write_text(rubric(assignment, canary), encoding="utf-8")
+    write(teacher / "solutions" / f"{assignment.name}.py", f"# {canary}\n{text}")
+    write(teacher / "rubric" / f"{assignment.name}.md", rubric(assignment, canary))
 
 
 def imports_of(assignment: Assignment) -> str:
@@ -106,14 +96,9 @@ def write_readmes(made: Path, assignments: list[Assignment], seed: int) -> None:
     names, canary = [assignment.name for assignment in assignments], canary_of(seed)
     for folder, name in READMES.items():
         path = made / folder / ("HANDOUT.md" if folder == "student" else "README.md")
-        path.write_text(template(name).render(names=", ".join(names), canary=canary), encoding="utf-8")
-    (made / "teacher" / "grading").mkdir()
-    write_json(made / "teacher" / "grading" / "seed.json", {"seed": seed, "canary": canary})
-    write_json(made / MARKER, {"made_by": MADE_BY, "version": 2, "lessons": names})
-
-
-def write_json(path: Path, value: dict) -> None:
-    path.write_text(json.dumps(value, indent=1) + "\n", encoding="utf-8")
+        write(path, PAGES.get_template(name).render(names=", ".join(names), canary=canary))
+    write(made / "teacher" / "grading" / "seed.json", json.dumps({"seed": seed, "canary": canary}) + "\n")
+    write(made / MARKER, json.dumps({"made_by": MADE_BY, "lessons": names}) + "\n")
 
 
 def write_package(path: Path, student: Path) -> None:

@@ -8,7 +8,6 @@ import ast
 import contextlib
 import copy
 import hashlib
-import importlib
 import json
 import os
 import pickle
@@ -20,31 +19,21 @@ import sys
 import time
 import types
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
+from typing import BinaryIO
 
 from course_lib.classroom.answers import encode
 from course_lib.lessons.kit.attempt import attempt
 from course_lib.lessons.kit.exercises import MAX_SHOWN, is_stub, same_values
 from course_lib.lessons.kit.forbidden import forbidden_module
 from course_lib.lessons.kit.hints import kind_of
-from course_lib.lessons.kit.statements import Statement, needed, read_statements
+from course_lib.lessons.kit.statements import Cell, Statement, needed, read_statements
 
-MAX_FILE = 20 << 20  # bytes; a lesson with all its pictures has 0.4 MB
 MAX_SENTENCE = 500  # characters
 TRUSTED = ("numpy", "scipy", "course_lib", "matplotlib", "cv2", "math")
 """What the process imports before it forks, if the notebook imports it, because imports are slow."""
 TRY = re.compile(r"\(try (\d{1,4})\)")
 RECALLED = re.compile(r"^\d+\. (.*)\n   you said: (.*)\n   measured: (.*)$", re.MULTILINE)
 MIN_NODES = 40  # of a syntax tree: two students write a shorter answer alike by chance
-
-
-class Submission(NamedTuple):
-    """What the file holds. exercises: by the cells' metadata. tries, recalled: read from the stored outputs."""
-
-    cells: list[tuple[str, str]]
-    exercises: list[str]
-    tries: dict[str, int]
-    recalled: list[tuple[str, str, str]]
 
 
 def main(path: str, call_seconds: float, seconds: float) -> None:
@@ -54,15 +43,15 @@ def main(path: str, call_seconds: float, seconds: float) -> None:
     for number in (0, 1, 2):  # what students' code prints past Python goes nowhere
         os.dup2(nothing, number)
     try:
-        held = read_submission(Path(path))
-        statements, problems = read_statements(held.cells)
+        cells, held = read_submission(Path(path))
+        statements, problems = read_statements(cells)
     except ValueError as error:
         send(results, {"unreadable": str(error)})
         return
     functions = {one.node.name: one.node for one in statements if isinstance(one.node, ast.FunctionDef)}
     shapes = {name: shape for name, node in functions.items() if (shape := digest(node))}
     names = sorted({name for one in statements for name in one.binds})
-    send(results, held._asdict() | {"cells": None, "functions": names, "shapes": shapes, "problems": problems})
+    send(results, held | {"functions": names, "shapes": shapes, "problems": problems})
     prepare(statements)
     while size := orders.read(8):
         order = pickle.loads(orders.read(struct.unpack("=Q", size)[0]))
@@ -95,33 +84,29 @@ def wait(child: int, seconds: float) -> str:
     return "" if code == 0 else f"crashes its process ({signal.Signals(-code).name if code < 0 else f'exit {code}'})"
 
 
-def read_submission(path: Path) -> Submission:
-    """Read a notebook or a Python file. Raises `ValueError` with a sentence that follows "the file"."""
-    with open(path, "rb") as file:
-        content = file.read(MAX_FILE + 1)
-    if len(content) > MAX_FILE:
-        raise ValueError(f"has more than {MAX_FILE >> 20} MB")
+def read_submission(path: Path) -> tuple[list[Cell], dict]:
+    """Return the code cells of a notebook or a Python file, and what the notebook's metadata and stored outputs tell.
+
+    These are its exercises, the tries at each, and (question, predicted, measured) of each prediction. Raises
+    `ValueError` with a sentence that follows "the file".
+    """
     try:
-        text = content.decode("utf-8-sig")
+        text = path.read_text(encoding="utf-8-sig")
         if path.suffix.lower() == ".py":
-            return Submission([("the file", text)], [], {}, [])
+            return [("the file", text)], {"exercises": [], "tries": {}, "recalled": []}
         cells = json.loads(text)["cells"]
         code = [(number, cell) for number, cell in enumerate(cells, start=1) if cell["cell_type"] == "code"]
         sources = [(f"cell {number}", "".join(cell["source"])) for number, cell in code]
         numbers = [str(cell["metadata"].get("exercise", "")) for _, cell in code]
-        printed = [_printed(cell) for _, cell in code]
+        outputs = [[one for one in cell.get("outputs", []) if one.get("output_type") == "stream"] for _, cell in code]
+        printed = ["".join("".join(one["text"]) for one in some)[:20_000] for some in outputs]
     except UnicodeDecodeError:
         raise ValueError("is not UTF-8 text") from None
     except (ValueError, RecursionError, KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"is not a notebook that can be read ({type(error).__name__})") from None
     tries = {n: int(found[-1]) for n, text in zip(numbers, printed, strict=True) if n and (found := TRY.findall(text))}
     recalled = [found for text in printed for found in RECALLED.findall(text)]
-    return Submission(sources, sorted(set(numbers) - {""}), tries, recalled)
-
-
-def _printed(cell: dict) -> str:
-    outputs = [one for one in cell.get("outputs", []) if one.get("output_type") == "stream"]
-    return "".join("".join(one["text"]) for one in outputs)[:20_000]
+    return sources, {"exercises": sorted(set(numbers) - {""}), "tries": tries, "recalled": recalled}
 
 
 def digest(function: ast.FunctionDef) -> str:
@@ -144,15 +129,12 @@ def digest(function: ast.FunctionDef) -> str:
 
 
 def prepare(statements: list[Statement]) -> None:
-    """Import the libraries that the notebook imports."""
-    for one in statements:
-        modules = [alias.name for alias in one.node.names] if isinstance(one.node, ast.Import) else []
-        if isinstance(one.node, ast.ImportFrom) and not one.node.level and one.node.module:
-            modules = [one.node.module, *(f"{one.node.module}.{alias.name}" for alias in one.node.names)]
-        for name in modules:
-            if name.partition(".")[0] in TRUSTED:
-                with contextlib.suppress(Exception):
-                    importlib.import_module(name)
+    """Import the libraries that the notebook imports, once for all answers."""
+    for node in (one.node for one in statements if isinstance(one.node, ast.Import | ast.ImportFrom)):
+        modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else [node.module or ""]
+        if all(name.partition(".")[0] in TRUSTED for name in modules):
+            with contextlib.suppress(Exception):
+                exec(compile(ast.Module([node], []), "imports", "exec"), {})
 
 
 def answer(
@@ -186,9 +168,8 @@ def answer(
 
 def run(statements: list[Statement], seconds: float) -> tuple[dict, list[str]]:
     """Return the names that the statements define, and a sentence for each statement that failed."""
-    module = types.ModuleType("handed_in")
-    sys.modules[module.__name__] = module
-    names, problems = vars(module), []
+    sys.modules["handed_in"] = types.ModuleType("handed_in")
+    names, problems = vars(sys.modules["handed_in"]), []
     for one in statements:
         code = compile(ast.Module([one.node], []), one.cell, "exec", dont_inherit=True)
         failure = attempt(lambda code=code: exec(code, names), (), seconds).failure

@@ -11,18 +11,18 @@ import pickle
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from course_lib.classroom.answers import AnswerFormatError, decode, one_line
-from course_lib.classroom.points import SCORE_POINTS, earned, most_of, secret
+from course_lib.classroom.points import SCORE_POINTS, earned, lesson_of, most_of, secret
 from course_lib.classroom.sandbox import Limits, Run, Sandbox
 from course_lib.classroom.worlds import graded_project, score_points, score_sentence
 from course_lib.lessons.kit.exercises import Exercise, find_exercise, right_on
 from course_lib.lessons.kit.general_mistakes import general_mistake
 from course_lib.lessons.kit.hints import known_mistake
-from course_lib.lessons.kit.projects import AnswerError, Outcome, Project, project_names
+from course_lib.lessons.kit.projects import AnswerError, Outcome, Project
 
 Status = Literal["right", "partly right", "wrong", "not attempted"]
 FAILURES = {
@@ -33,19 +33,33 @@ FAILURES = {
 """What a student reads of a failure that begins so."""
 
 
+class Settings(NamedTuple):
+    """How files are judged. functions: "06.1" -> "raw_score" for each exercise and project. scores: projects' too."""
+
+    functions: dict[str, str]
+    seed: int
+    library: Path
+    limits: Limits = Limits()
+    trust: bool = False
+    scores: bool = False
+
+
 @dataclass
 class Graded:
     """What one answer earned. sentence: for the student. remarks, printed: for the teacher alone."""
 
     number: str
-    status: Status
-    points: float
-    most: int
-    sentence: str
+    status: Status = "not attempted"
+    points: float = 0
+    sentence: str = "Not attempted."
     right_inputs: int = 0
     inputs: int = 0
     remarks: list[str] = field(default_factory=list)
     printed: str = ""
+
+    @property
+    def most(self) -> int:
+        return most_of(self.number)
 
 
 @dataclass
@@ -65,33 +79,31 @@ class Judged:
     why: str = ""
 
 
-def judge(
-    path: Path, stubs: dict[str, str], seed: int, library: Path, limits: Limits, guess: str = "", trust: bool = False,
-    scores: bool = False,
-) -> Judged:  # fmt: skip
-    """Judge one file. stubs: the function of every exercise and project. guess: the lesson that its name says."""
+def judge(path: Path, settings: Settings, guess: str = "") -> Judged:
+    """Judge one file. guess: the lesson that its name says."""
+    functions, seed, library, limits, trust, scores = settings
     try:
         with Sandbox(path, library, limits, trust) as box:
             if "unreadable" in box.opened:
                 return Judged(why=f"the file {one_line(box.opened['unreadable'])}")
             found = _opened(box.opened)
-            held = found.pop("exercises")
-            names = lessons_of(held, found.pop("functions"), stubs, guess)
-            judged = Judged(names, **found)
-            numbers = [number for number in stubs if number.partition(".")[0] in names]
-            judged.shapes = {n: judged.shapes[stubs[n]] for n in numbers if stubs[n] in judged.shapes}
-            stages = [number for number in numbers if "." in number]
-            judged.answers = [judge_answer(find_exercise(number), stubs[number], box, seed) for number in stages]
+            lessons = lessons_of(found.pop("exercises"), found.pop("functions"), functions, guess)
+            judged = Judged(lessons, **found)
+            asked = {number: name for number, name in functions.items() if lesson_of(number) in lessons}
+            judged.shapes = {number: judged.shapes[name] for number, name in asked.items() if name in judged.shapes}
+            judged.answers = [
+                judge_answer(find_exercise(number), name, box, seed) for number, name in asked.items() if "." in number
+            ]
     except AnswerFormatError as error:
         return Judged(why=f"the file could not be read: its process {error}")
-    if not names:
+    if not lessons:
         judged.why = "the file does not say which lesson it is: it has no exercise's cell and no exercise's function"
-    for name in [name for name in names if scores and name in project_names()]:
+    for name in [name for name in asked if scores and "." not in name]:
         try:
-            judged.answers.append(judge_score(name, path, library, seed, limits, trust))
+            judged.answers.append(judge_score(name, path, settings))
         except AnswerFormatError as error:
-            said = "Your function could not be scored."
-            judged.answers.append(Graded(name, "wrong", 0, SCORE_POINTS, said, remarks=[f"its process {error}"]))
+            remark = f"its process {error}"
+            judged.answers.append(Graded(name, "wrong", 0, "Your function could not be scored.", remarks=[remark]))
     return judged
 
 
@@ -110,11 +122,11 @@ def _opened(message: dict) -> dict:
         raise AnswerFormatError("sends what is no list of cells") from error
 
 
-def lessons_of(held: list[str], functions: list[str], stubs: dict[str, str], guess: str) -> list[str]:
-    """Return the lessons and projects in a file: by its cells' metadata, else by its functions' names."""
-    if names := sorted({number.partition(".")[0] for number in held if number in stubs}):
-        return names
-    count = Counter(number.partition(".")[0] for number, function in stubs.items() if function in functions)
+def lessons_of(exercises: list[str], names: list[str], functions: dict[str, str], guess: str) -> list[str]:
+    """Return the lessons and projects in a file: by the exercises of its cells, else by the names that it defines."""
+    if lessons := sorted({lesson_of(number) for number in exercises if number in functions}):
+        return lessons
+    count = Counter(lesson_of(number) for number, name in functions.items() if name in names)
     best = max(count, key=lambda lesson: (count[lesson], lesson == guess), default="")
     return [best] if best else []
 
@@ -126,24 +138,22 @@ def judge_answer(exercise: Exercise, function: str, box: Sandbox, seed: int) -> 
     """Run and judge one answer."""
     arguments = exercise.draw(np.random.default_rng(secret(seed, exercise.number)))
     run = box.run(exercise.number, function, pickle.dumps(arguments))
-    most, none = most_of(exercise.number), run.head.get("none")
+    none = run.head.get("none")
     remarks = [one_line(text) for text in run.head.get("problems", [])][:20]
-    if none == "stub" or (none == "missing" and not remarks):
-        return Graded(exercise.number, "not attempted", 0, most, "Not attempted.", inputs=len(arguments))
+    answers, troubles, details = _answers(run, len(arguments))
+    if none == "stub" or (none == "missing" and not remarks) or answers[0] is ...:
+        return Graded(exercise.number, inputs=len(arguments))
     if none is not None:
         said = "There is none that runs." if none == "missing" else "It is something else."
-        return Graded(exercise.number, "wrong", 0, most, f"A function {function}() is asked. {said}", remarks=remarks)
-    answers, troubles, details = _answers(run, len(arguments))
-    if run.calls and answers[0] is ...:
-        return Graded(exercise.number, "not attempted", 0, most, "Not attempted.", inputs=len(arguments))
+        return Graded(exercise.number, "wrong", 0, f"A function {function}() is asked. {said}", remarks=remarks)
     with np.errstate(all="ignore"):
         right = _right(exercise, arguments, answers)
-        points = earned(exercise, right)
+        points = earned(most_of(exercise.number), right)
         status: Status = "right" if all(right) else "partly right" if points else "wrong"
         sentence = "Right." if all(right) else _sentence(exercise, arguments, answers, right, troubles)
     printed = one_line(run.calls[0].get("printed", "")) if run.calls else ""
     remarks = [] if all(right) else [*remarks, *details]
-    return Graded(exercise.number, status, points, most, sentence, sum(right), len(right), remarks, printed)
+    return Graded(exercise.number, status, points, sentence, sum(right), len(right), remarks, printed)
 
 
 def _answers(run: Run, wanted: int) -> tuple[list, list[str], list[str]]:
@@ -210,45 +220,42 @@ def _sentence(exercise: Exercise, arguments: list, answers: list, right: list[bo
 # A project's last function
 
 
-def judge_score(name: str, path: Path, library: Path, seed: int, limits: Limits, trust: bool) -> Graded:
+def judge_score(name: str, path: Path, settings: Settings) -> Graded:
     """Judge a project's function in the worlds of the secret seed; "inputs" are the worlds in which it runs."""
-    project = graded_project(name, secret(seed, name))
-    roomy = limits._replace(call_seconds=project.seconds, seconds=5 * project.seconds, memory_mb=2 * limits.memory_mb)
+    project = graded_project(name, secret(settings.seed, name))
+    memory = 2 * settings.limits.memory_mb
+    roomy = settings.limits._replace(call_seconds=project.seconds, seconds=5 * project.seconds, memory_mb=memory)
     outcomes: list[Outcome] = []
-    with Sandbox(path, library, roomy, trust) as box:
+    with Sandbox(path, settings.library, roomy, settings.trust) as box:
         for world in project.seeds:
             lost = outcomes and outcomes[-1].out_of_time
             outcomes.append(outcomes[-1] if lost else _outcome(project, box, world))
     values = [outcome.value for outcome in outcomes]
     failed = [outcome.remark for outcome in outcomes if outcome.failed]
     if len(failed) == len(values) and failed[0] == "Not attempted.":
-        return Graded(name, "not attempted", 0, SCORE_POINTS, failed[0])
+        return Graded(name)
     points = score_points(project, values)
     status: Status = "right" if points == SCORE_POINTS else "partly right" if points else "wrong"
     sentence = score_sentence(project, values, len(failed))
     ran = len(values) - len(failed)
-    return Graded(name, status, points, SCORE_POINTS, sentence, ran, len(values), list(dict.fromkeys(failed))[:5])
+    return Graded(name, status, points, sentence, ran, len(values), list(dict.fromkeys(failed))[:5])
 
 
 def _outcome(project: Project, box: Sandbox, world: int) -> Outcome:
     """Run the function in one world and measure its answer."""
 
-    def failed(remark: str, last: bool = False) -> Outcome:
-        return Outcome(project.worst, remark, True, last)
-
     def call(calls: list[tuple]) -> list:
         run = box.run(project.name, project.function, pickle.dumps(calls), project.forbidden)
         if run.head.get("none") is not None:
             raise LookupError("Not attempted.")
-        if run.head.get("forbidden"):
-            raise LookupError(
-                f"Not scored: it uses {one_line(run.head['forbidden'])}, which is to be written yourself."
-            )
+        if banned := run.head.get("forbidden"):
+            raise LookupError(f"Not scored: it uses {one_line(banned)}, which is to be written yourself.")
         failures = [one_line(one["failure"]) for one in run.calls if "failure" in one]
         if failures or run.ended or len(run.calls) < len(calls):
             raise AnswerError((failures or [run.ended or "does not answer every call"])[0])
         return [decode(one.get("value")) for one in run.calls]
 
+    last = False  # no other world is tried
     try:
         task = project.prepare(world)
         answers = call(list(task.arguments) if project.many else [task.arguments])
@@ -256,15 +263,16 @@ def _outcome(project: Project, box: Sandbox, world: int) -> Outcome:
             result = project.measure(task, answers if project.many else answers[0])
         if project.rule is not None:
             project.rule(project.prepare(world), lambda *arguments: call([arguments])[0], answers[0])
+        if np.isfinite(result.value):
+            return Outcome(float(result.value), result.remark)
+        remark = f"failed: {result.remark or 'no number came of it'}"
     except LookupError as error:
-        return failed(str(error), last=True)
+        remark, last = str(error), True
     except AnswerError as error:
-        return failed(f"Your function {one_line(error)}.", last=str(error).startswith("does not end"))
+        remark, last = f"Your function {one_line(error)}.", str(error).startswith("does not end")
     except Exception as error:  # a value of a kind that nobody measures
-        return failed(f"Your function returns what cannot be measured ({type(error).__name__}).")
-    if not np.isfinite(result.value):
-        return failed(f"failed: {result.remark or 'no number came of it'}")
-    return Outcome(float(result.value), result.remark)
+        remark = f"Your function returns what cannot be measured ({type(error).__name__})."
+    return Outcome(project.worst, remark, True, last)
 
 
 def from_json(stored: dict) -> Judged:

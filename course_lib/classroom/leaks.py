@@ -6,8 +6,8 @@ import json
 import re
 from pathlib import Path
 
-from course_lib.classroom.assignment_cells import Assignment, tag_of
-from course_lib.classroom.model_answers import function_name, model_answers
+from course_lib.classroom.assignment_cells import Assignment, function_name, tag_of
+from course_lib.classroom.model_answers import model_answers
 
 MIN_DIGITS = 8
 """A seed of fewer is found everywhere by chance."""

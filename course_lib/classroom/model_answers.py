@@ -4,7 +4,7 @@ import ast
 import re
 from pathlib import Path
 
-from course_lib.classroom.assignment_cells import Assignment, AssignmentError
+from course_lib.classroom.assignment_cells import Assignment, AssignmentError, function_name
 from course_lib.lessons.kit.statements import needed, read_statements
 from course_lib.paths import REPOSITORY
 
@@ -14,33 +14,19 @@ def model_solution_path(name: str) -> Path:
     return REPOSITORY / "notebooks" / "projects" / "solutions" / f"{name}_model_solution.py"
 
 
-def function_name(source: str) -> str:
-    """Return the name of the function that a stub's or a solution's cell defines. Raises `AssignmentError`."""
-    functions = [node.name for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)]
-    if not functions:
-        raise AssignmentError(f"a stub or a solution defines a function; this cell defines none: {source[:60]!r}")
-    return functions[-1]
-
-
 def model_answers(assignment: Assignment) -> dict[str, str]:
     """Return the code of every model answer: "06.1" -> code; of a project also "P1", the function that is scored."""
+    functions = assignment.functions()
     if not assignment.is_project:
-        return {one.number: _renamed(one.solution, function_name(one.stub)) for one in assignment.exercises()}
+        solutions = {one.number: one.solution for one in assignment.exercises()}
+        return {n: re.sub(rf"\b{function_name(solutions[n])}\b", name, solutions[n]) for n, name in functions.items()}
     source = model_solution_path(assignment.name).read_text(encoding="utf-8")
     statements, _ = read_statements([("the model solution", source)])
-    stubs = {one.number: one.stub for one in assignment.exercises()} | {assignment.name: assignment.submission()}
     found = {}
-    for number, stub in stubs.items():
-        name = function_name(stub)
+    for number, name in functions.items():
         chosen = [one.node for one in needed(statements, name)]
         chosen.sort(key=lambda node: getattr(node, "name", "") == name)  # last, as a cell is named by its last function
         if not chosen:
-            raise AssignmentError(f"the model solution has no function {function_name(stub)}()")
+            raise AssignmentError(f"the model solution has no function {name}()")
         found[number] = "\n\n\n".join(ast.get_source_segment(source, node) for node in chosen)
     return found
-
-
-def _renamed(solution: str | None, name: str) -> str:
-    if solution is None:
-        raise AssignmentError(f"the exercise of {name}() has no solution cell")
-    return re.sub(rf"\b{re.escape(function_name(solution))}\b", name, solution)

@@ -15,7 +15,7 @@ import nbformat
 from course_lib.classroom.assignment_cells import Assignment, tag_of
 from course_lib.classroom.model_answers import model_answers
 from course_lib.classroom.points import most_of
-from course_lib.classroom.student_copies import FOLDERS, NOTEBOOKS, unsolved_notebook, write_notebook
+from course_lib.classroom.student_copies import FOLDERS, NOTEBOOKS, unsolved_notebook, write
 
 SCHEMA = 3
 """Of nbgrader's cell metadata, since its version 0.6."""
@@ -41,19 +41,16 @@ def write_course(folder: Path, assignments: list[Assignment], canary: str) -> No
     for assignment in assignments:
         place = folder / "source" / assignment.name
         notebook = source_notebook(assignment, canary, resolve)
-        write_notebook(place / f"{assignment.name}.ipynb", notebook)
+        write(place / f"{assignment.name}.ipynb", notebook)
         for used in ["GLOSSARY.md", *files_used(notebook)]:
             (place / used).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(NOTEBOOKS / used, place / used)
-    (folder / "nbgrader_config.py").write_text(CONFIGURATION, encoding="utf-8")
+    write(folder / "nbgrader_config.py", CONFIGURATION)
 
 
 def files_used(notebook: nbformat.NotebookNode) -> list[str]:
     """Return the pictures and scenes that a notebook shows."""
-    texts = [cell.source for cell in notebook.cells if cell.cell_type == "markdown"]
-    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
-    texts += [str(output.get("data", {}).get("text/html", "")) for output in outputs]
-    found = re.findall(rf"(?<![\w/])((?:{'|'.join(FOLDERS)})/[\w.-]+)", "\n".join(texts))
+    found = re.findall(rf"(?<![\w/])((?:{'|'.join(FOLDERS)})/[\w.-]+)", nbformat.writes(notebook))
     return sorted({name for name in found if (NOTEBOOKS / name).is_file()})
 
 

@@ -1,11 +1,10 @@
 """What nbgrader does in our courses: the judge of `course.py grade` gives the points, and no cell runs in a kernel."""
 
-import atexit
-import contextlib
 import functools
 import json
 import os
 import sys
+import tempfile
 from pathlib import Path
 
 from nbconvert.preprocessors import ClearMetadataPreprocessor, CSSHTMLHeaderPreprocessor
@@ -26,11 +25,11 @@ from nbgrader.preprocessors import (
 from traitlets import Bool, Unicode
 from traitlets.config import Config
 
-from course_lib.classroom.assignment_cells import read_assignments
-from course_lib.classroom.grading import function_names, require_unseen, tried_library
-from course_lib.classroom.judge import Judged, judge
+from course_lib.classroom.assignment_cells import function_names
+from course_lib.classroom.grading import prepare, require_unseen
+from course_lib.classroom.judge import Settings, judge
 from course_lib.classroom.sandbox import Limits
-from course_lib.classroom.student_copies import write_notebook
+from course_lib.classroom.student_copies import write
 from course_lib.files import temporary_folder
 
 
@@ -44,7 +43,10 @@ class Judge(NbGraderPreprocessor):
         if not self.trust:
             require_unseen(Path(self.seed_file))
         seed = json.loads(Path(self.seed_file).read_text(encoding="utf-8"))["seed"]
-        judged = judge_notebook(nb, seed, self.trust)
+        with temporary_folder() as folder:
+            write(folder / "submission.ipynb", nb)
+            settings = Settings(function_names(), seed, Path(_library(self.trust).name), trust=self.trust, scores=True)
+            judged = judge(folder / "submission.ipynb", settings)
         given = {one.number.replace(".", "-"): one for one in judged.answers}
         for cell in nb.cells:
             if utils.is_grade(cell):
@@ -62,21 +64,12 @@ class Judge(NbGraderPreprocessor):
         return nb, resources
 
 
-def judge_notebook(nb: NotebookNode, seed: int, trust: bool) -> Judged:
-    """Judge one notebook, its exercises and a project's score."""
-    library, functions = _prepared(trust)
-    with temporary_folder() as folder:
-        write_notebook(folder / "submission.ipynb", nb)
-        return judge(folder / "submission.ipynb", functions, seed, library, Limits(), trust=trust, scores=True)
-
-
 @functools.cache
-def _prepared(trust: bool) -> tuple[Path, dict[str, str]]:
-    """Return the library for the sandbox and the functions that are asked for, once for all notebooks of a process."""
-    stack = contextlib.ExitStack()
-    atexit.register(stack.close)
-    library, _, _ = stack.enter_context(tried_library(Limits(), trust))
-    return library, function_names(read_assignments())
+def _library(trust: bool) -> tempfile.TemporaryDirectory:
+    """Return the library for the sandbox, once for all notebooks of a process, which removes it at its end."""
+    folder = tempfile.TemporaryDirectory(prefix="course-")
+    prepare(Path(folder.name), Limits(), trust)
+    return folder
 
 
 def configure(config: Config, course: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from course_lib.classroom.points import BY_HAND
 from course_lib.classroom.results import Results, table_text
-from course_lib.classroom.templates import template
+from course_lib.classroom.templates import PAGES
 from course_lib.files import atomic_write
 from course_lib.lessons.kit.projects import project_names
 
@@ -18,7 +18,7 @@ MARKS = {"right": "\u2713", "partly right": "\u00bd", "wrong": "\u2717", "not at
 def write_results(results: Results, out: Path) -> list[str]:
     """Write all pages and tables into a folder and return their names."""
     values = {"results": results, "marks": MARKS, "projects": project_names(), "by_hand": BY_HAND}
-    atomic_write(out / "grades.html", template("grades.html").render(values))
+    atomic_write(out / "grades.html", PAGES.get_template("grades.html").render(values))
     tables = {"totals.csv": totals(results), "answers.csv": answers(results)}
     for name, rows in tables.items():
         atomic_write(out / name, table_text(rows))
@@ -26,7 +26,7 @@ def write_results(results: Results, out: Path) -> list[str]:
     taken: dict[str, str] = {}
     for student in results.students:
         name = feedback_name(student, taken)
-        page = template("feedback.html").render(values | {"student": student})
+        page = PAGES.get_template("feedback.html").render(values | {"student": student})
         atomic_write(out / "feedback" / name, page)
     return ["grades.html", *tables, "feedback/"]
 

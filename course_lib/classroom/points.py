@@ -3,7 +3,7 @@
 import hashlib
 from collections.abc import Sequence
 
-from course_lib.lessons.kit.exercises import Exercise, find_exercise
+from course_lib.lessons.kit.exercises import find_exercise
 from course_lib.lessons.kit.projects import project_names
 
 POINTS = {"warm-up": 2, "core": 4, "challenge": 6}
@@ -14,25 +14,22 @@ BY_HAND = 10
 """Of a project's written part, which the teacher gives."""
 
 
-def points_of(exercise: Exercise) -> int:
-    """Return the points of an exercise whose every answer is right."""
-    return POINTS[exercise.level]
+def lesson_of(number: str) -> str:
+    """Return the lesson or project of exercise "06.1" or of the score of project "P1"."""
+    return number.partition(".")[0]
 
 
 def most_of(number: str) -> int:
-    """Return the points of exercise "06.1" or of the score of project "P1"."""
-    return SCORE_POINTS if number in project_names() else points_of(find_exercise(number))
+    """Return the points of exercise "06.1" or of the score of project "P1", if all is right."""
+    return SCORE_POINTS if number in project_names() else POINTS[find_exercise(number).level]
 
 
-def earned(exercise: Exercise, right: Sequence[bool]) -> int:
+def earned(most: int, right: Sequence[bool]) -> int:
     """Return the points for the inputs on which the answer is right: all of them, or half for at least half of them.
 
     A function that is right by chance, or for one case alone, earns nothing.
     """
-    share = sum(right) / len(right)
-    if share == 1:
-        return points_of(exercise)
-    return points_of(exercise) // 2 if share >= 0.5 else 0
+    return most if all(right) else most // 2 if sum(right) >= len(right) / 2 else 0
 
 
 def secret(seed: int, number: str) -> int:

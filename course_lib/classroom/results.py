@@ -2,19 +2,20 @@
 
 import csv
 import io
+import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from course_lib.classroom.answers import harmless
-from course_lib.classroom.judge import Judged
-from course_lib.classroom.points import BY_HAND, most_of
+from course_lib.classroom.judge import Graded, Judged
+from course_lib.classroom.points import BY_HAND, lesson_of, most_of
 from course_lib.classroom.submissions import NotRead, Roster, Submission, read_table, shown
 from course_lib.files import atomic_write
 from course_lib.lessons.kit.projects import project_names
 
-KEYS = ("right", "partly_right", "wrong", "not_attempted")
+FORMULA = re.compile(r"^[\s\u200b\ufeff]*[=+\-@\uff1d\ufe66\uff0b\uff0d\uff20\t\r]")
+"""A spreadsheet takes a cell that begins so for a formula; some take full-width signs too."""
 
 
 @dataclass
@@ -33,6 +34,10 @@ class Entry:
     @property
     def name(self) -> str:
         return shown(self.submission.path.name)
+
+
+def answers_of(entries: list[Entry]) -> Iterator[Graded]:
+    return (one for entry in entries for one in entry.judged.answers)
 
 
 @dataclass
@@ -68,14 +73,14 @@ class Results:
 
     def most(self, lesson: str) -> int:
         """Return the points that a lesson or project has."""
-        numbers = {a.number for one in self.entries for a in one.judged.answers if lesson_of(a.number) == lesson}
+        numbers = {one.number for one in answers_of(self.entries) if lesson_of(one.number) == lesson}
         return sum(map(most_of, numbers)) + (BY_HAND if lesson in project_names() else 0)
 
     def points(self, student: str, lesson: str) -> float | None:
         """Return a student's points in a lesson, or None if nothing of it was handed in."""
-        answers = [a for one in self.of(student) for a in one.judged.answers if lesson_of(a.number) == lesson]
-        given = self.by_hand.get((student, lesson))
-        return sum(a.points for a in answers) + (given or 0) if answers or given is not None else None
+        points = [one.points for one in answers_of(self.of(student)) if lesson_of(one.number) == lesson]
+        points += [self.by_hand[student, lesson]] if (student, lesson) in self.by_hand else []
+        return sum(points) if points else None
 
     def total(self, student: str) -> float:
         return sum(self.points(student, lesson) or 0 for lesson in self.lessons)
@@ -91,14 +96,14 @@ class Results:
     def per_exercise(self) -> list[dict]:
         """Return for each exercise: how many right, partly right, wrong, not attempted, the commonest hint, tries."""
         rows = []
-        for number in sorted({a.number for one in self.entries for a in one.judged.answers}):
-            answers = [a for one in self.entries for a in one.judged.answers if a.number == number]
+        for number in sorted({one.number for one in answers_of(self.entries)}):
+            answers = [one for one in answers_of(self.entries) if one.number == number]
             hints = Counter(a.sentence for a in answers if a.status in ("wrong", "partly right")).most_common(1)
             tries = sorted(one.judged.tries[number] for one in self.entries if number in one.judged.tries)
             rows.append({
                 "number": number, "most": most_of(number), "mean": sum(a.points for a in answers) / len(answers),
-                **dict.fromkeys(KEYS, 0), **Counter(a.status.replace(" ", "_") for a in answers),
-                "hint": hints[0] if hints else None, "tries": tries[len(tries) // 2] if tries else None,
+                "statuses": Counter(a.status for a in answers), "hint": hints[0] if hints else None,
+                "tries": tries[len(tries) // 2] if tries else "",
             })  # fmt: skip
         return rows
 
@@ -109,10 +114,6 @@ class Results:
             for question, said, measured in one.judged.recalled:
                 found.setdefault((one.judged.lessons[0], question, measured), []).append((one.student, said))
         return [(*key, who) for key, who in sorted(found.items())]
-
-
-def lesson_of(number: str) -> str:
-    return number.partition(".")[0]
 
 
 def what_counts(judged: list[Entry], asked: list[str]) -> tuple[list[Entry], list[NotRead]]:
@@ -167,5 +168,6 @@ def points_by_hand(path: Path, entries: list[Entry]) -> dict[tuple[str, str], fl
 def table_text(rows: Iterable[Sequence[object]]) -> str:
     """Return rows as CSV with a byte order mark, every text quoted; an apostrophe stands before a formula's sign."""
     text = io.StringIO()
-    csv.writer(text, quoting=csv.QUOTE_ALL, lineterminator="\r\n").writerows([map(harmless, row) for row in rows])
+    writer = csv.writer(text, quoting=csv.QUOTE_ALL, lineterminator="\r\n")
+    writer.writerows([f"'{cell}" if FORMULA.match(str(cell)) else cell for cell in row] for row in rows)
     return "\ufeff" + text.getvalue()

@@ -19,7 +19,6 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -32,7 +31,6 @@ KEPT_BACK = ("exercises.py", "project.py", "rivals.py")
 """Modules of a lesson or project with solutions, hidden seeds or rivals."""
 IN_CLASSROOM = ("__init__.py", "answers.py", "inside.py")
 """What the process in the sandbox needs of this folder."""
-HIDDEN_DATA = ("rooms_hidden.json",)
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/etc/ld.so.cache", "/etc/fonts", "/etc/localtime")
 SYSTEM += ("/etc/alternatives", "/sys/devices/system/cpu")
 ENVIRONMENT = {
@@ -49,6 +47,7 @@ REFUSED = (
     "ptrace", "process_vm_readv", "process_vm_writev", "pidfd_getfd", "userfaultfd", "bpf", "perf_event_open",
 )  # fmt: skip
 """System calls that no answer needs. Libraries are told that the kernel has none, and take another way."""
+PYTHON = (sys.executable, "-P", "-s", "-B", "-c")
 START_SECONDS = 300.0  # until the file is read; only a fault takes so long
 LOOK_EVERY = 0.1  # seconds between two looks at memory
 MAX_LINE = 16 << 20  # bytes of one call's answer; right answers have some kilobytes
@@ -85,9 +84,8 @@ class Run(NamedTuple):
     ended: str
 
 
-@contextlib.contextmanager
-def library_copy(folder: Path) -> Iterator[Path]:
-    """Copy the course's library into a folder, without what no student's code may read."""
+def copy_library(folder: Path) -> None:
+    """Copy the course's library into an empty folder, without what no student's code may read."""
 
     def left_out(place: str, names: list[str]) -> set[str]:
         here = Path(place)
@@ -95,13 +93,13 @@ def library_copy(folder: Path) -> Iterator[Path]:
             return {name for name in names if not name.endswith((".nbi", ".nbc"))}
         if here.name == "classroom":
             return set(names) - set(IN_CLASSROOM)
-        kept_back = KEPT_BACK if here.name.startswith(("lesson_", "foundation_", "project_")) else ()
-        return {"commands"} if here.name == "course_lib" else set(kept_back)
+        if here.name.startswith(("lesson_", "foundation_", "project_")):
+            return set(KEPT_BACK)
+        return {"commands"} if here.name == "course_lib" else set()
 
     shutil.copytree(REPOSITORY / "course_lib", folder / "course_lib", ignore=left_out)
     compileall.compile_dir(folder / "course_lib", quiet=2)  # once, not in every sandbox
     (folder / "data").symlink_to(REPOSITORY / "data")  # without walls; inside them it is a mount
-    yield folder
 
 
 def require_walls() -> None:
@@ -160,7 +158,7 @@ def walls(limits: Limits, library: Path | None = None, submission: Path | None =
     if library is not None:
         command += ["--ro-bind", str(library / "course_lib"), "/course/course_lib"]
         for path in sorted([*(REPOSITORY / "data").iterdir(), *(REPOSITORY / "data" / "projects").iterdir()]):
-            if path.name not in (*HIDDEN_DATA, "projects"):
+            if path.name not in ("rooms_hidden.json", "projects"):
                 command += ["--ro-bind", str(path), f"/course/data/{path.relative_to(REPOSITORY / 'data')}"]
     if submission is not None:
         command += ["--ro-bind", str(submission), f"/handed_in/submission{submission.suffix.lower()}"]
@@ -177,7 +175,7 @@ class Sandbox:
         place = library if trust else Path("/course")
         code = f"import sys; sys.path.insert(0, {str(place)!r}); from course_lib.classroom.inside import main; "
         code += f"main({str(path)!r}, {limits.call_seconds!r}, {limits.seconds!r})"
-        python = [sys.executable, "-P", "-s", "-B", "-c", code]
+        python = [*PYTHON, code]
         pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE) | {"start_new_session": True}
         if trust:
             environment = os.environ | ENVIRONMENT | {"HOME": str(library)}

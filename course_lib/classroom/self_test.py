@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from string import Template
 
-from course_lib.classroom.sandbox import ENVIRONMENT, Limits, SandboxError, start
+from course_lib.classroom.sandbox import ENVIRONMENT, PYTHON, Limits, SandboxError, start
 from course_lib.files import temporary_folder
 
 ATTEMPTS: dict[str, str] = tomllib.loads(Path(__file__).with_name("attempts.toml").read_text(encoding="utf-8"))
@@ -64,16 +64,14 @@ def attempts(library: Path, limits: Limits) -> dict[str, str]:
     with _outside() as there:
         names = there | {"bytes": limits.folder_mb << 20, "home": Path.home()}
         codes = {what: Template(code).substitute(names) for what, code in ATTEMPTS.items()}
-        python = [part for prefix in (sys.prefix, sys.base_prefix) for part in Path(prefix).parts]
-        known = [*ENVIRONMENT, "LC_CTYPE", "PWD"]
         program = FRAME.format(
-            mark=MARK, known=known, python=python, attempts=json.dumps(codes), folder=limits.folder_mb << 20
-        )
-        submission = Path(there["folder"]) / "submission.py"
-        submission.write_text("", encoding="utf-8")
-        python = [sys.executable, "-P", "-s", "-B", "-c", program]
+            mark=MARK, known=[*ENVIRONMENT, "LC_CTYPE", "PWD"], attempts=json.dumps(codes), folder=names["bytes"],
+            python=[*Path(sys.prefix).parts, *Path(sys.base_prefix).parts],
+        )  # fmt: skip
+        submission = there["folder"] / "submission.py"
+        submission.touch()
         pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-        with start(python, limits, library, submission, **pipes) as process:
+        with start([*PYTHON, program], limits, library, submission, **pipes) as process:
             try:
                 out, said = process.communicate(timeout=120)
             except subprocess.TimeoutExpired:
@@ -98,5 +96,5 @@ def _outside() -> Iterator[dict]:
         abstract = f"course-{os.getpid()}"
         for name in (f"{folder}/socket", f"\0{abstract}"):
             stack.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)).bind(name)
-        found = {"secret": folder / "secret", "folder": folder, "abstract": abstract}
-        yield found | {"port": listening.getsockname()[1], "pid": process.pid}
+        port = listening.getsockname()[1]
+        yield {"secret": folder / "secret", "folder": folder, "abstract": abstract, "port": port, "pid": process.pid}

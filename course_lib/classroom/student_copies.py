@@ -86,12 +86,10 @@ def write_copies(folder: Path, assignments: list[Assignment], make: Callable = s
     lessons = {PurePosixPath(one.path.relative_to(NOTEBOOKS).as_posix()): one for one in assignments}
     places = {*lessons, *map(PurePosixPath, PAGES), PurePosixPath("projects")}
     for page in PAGES:
-        path = folder / page
-        path.parent.mkdir(parents=True, exist_ok=True)
         text = (NOTEBOOKS / page).read_text(encoding="utf-8")
-        path.write_text(student_text(text, within(places, PurePosixPath(page))), encoding="utf-8")
+        write(folder / page, student_text(text, within(places, PurePosixPath(page))))
     for place, assignment in lessons.items():
-        write_notebook(folder / place, make(assignment, within(places, place)))
+        write(folder / place, make(assignment, within(places, place)))
 
 
 def within(places: set[PurePosixPath], page: PurePosixPath) -> Resolve:
@@ -104,7 +102,8 @@ def within(places: set[PurePosixPath], page: PurePosixPath) -> Resolve:
     return resolve
 
 
-def write_notebook(path: Path, notebook: nbformat.NotebookNode) -> None:
-    """Write a notebook as the course stores it, in a folder that is made for it."""
+def write(path: Path, content: str | nbformat.NotebookNode) -> None:
+    """Write a text, or a notebook as the course stores it, in a folder that is made for it."""
+    text = content if isinstance(content, str) else nbformat.writes(content) + "\n"
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(nbformat.writes(notebook) + "\n", encoding="utf-8")
+    path.write_text(text, encoding="utf-8")

@@ -9,11 +9,12 @@ Links are not followed, and nothing here opens a file.
 """
 
 import csv
+import itertools
 import os
 import re
 import stat
 import unicodedata
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -82,25 +83,22 @@ def collect(folder: Path, lessons: dict[str, str], roster: Roster | None = None)
     if not folder.is_dir() or not any(folder.iterdir()):
         what = "is empty" if folder.is_dir() else "is not a folder"
         raise SubmissionError(f"{folder} {what}: name the folder that holds what the students handed in")
-    found: list[Submission] = []
-    not_read: list[NotRead] = []
-    count: Counter[tuple[str, bool]] = Counter()
+    found: dict[str, list[Submission]] = defaultdict(list)
+    not_read: dict[str, list[NotRead]] = defaultdict(list)
     for path in files_in(folder):
         relative = path.relative_to(folder)
         student, guess = whose(relative, lessons, roster)
-        why = refused(path) or ("" if student else NOBODYS)
-        count[student, bool(why)] += 1
-        if count[student, bool(why)] > MAX_FILES:
-            continue
-        if why:
-            not_read.append(NotRead(student, shown(relative), why))
+        if why := refused(path) or ("" if student else NOBODYS):
+            not_read[student].append(NotRead(student, shown(relative), why))
         else:
-            found.append(Submission(student, path, guess))
-    for (student, not_graded), files in count.items():
-        if files > MAX_FILES:
-            why = f"only {MAX_FILES} files of a student are {'named here' if not_graded else 'graded'}"
-            not_read.append(NotRead(student, f"{files - MAX_FILES:,} more files", why))
-    return sorted(found), sorted(not_read)
+            found[student].append(Submission(student, path, guess))
+    for files, what in ((not_read, "named here"), (found, "graded")):
+        for student, some in files.items():
+            if (more := len(some) - MAX_FILES) > 0:
+                del some[MAX_FILES:]
+                why = f"only {MAX_FILES} files of a student are {what}"
+                not_read[student].append(NotRead(student, f"{more:,} more files", why))
+    return sorted(itertools.chain(*found.values())), sorted(itertools.chain(*not_read.values()))
 
 
 def files_in(folder: Path) -> Iterator[Path]:

@@ -17,7 +17,7 @@ import numpy as np
 from course_lib.classroom.points import SCORE_POINTS, secret
 from course_lib.geometry import wrap_angle
 from course_lib.lessons.kit.projects import Project, Task, find_project, is_better, stored_rivals
-from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.detection.detected_object import Detection, wrapped_box
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
@@ -41,17 +41,17 @@ def graded_project(name: str, seed: int) -> Project:
         return dataclasses.replace(
             project, prepare=lambda room: moved(project.prepare(room), ROOMS[name], np.random.default_rng([seed, room]))
         )
+
+    def prepare(world: int) -> Task:
+        task = project.prepare(world)
+        # The task's own generator would tell the world's seed, and so the truth.
+        other = np.random.default_rng(secret(seed, f"rng of {world}"))
+        given = (other if isinstance(one, np.random.Generator) else one for one in task.arguments)
+        return task._replace(arguments=tuple(given))
+
     # So many seeds that nobody finds a world's by trying what they make.
     seeds = tuple(np.random.default_rng(seed).integers(1 << 62, (1 << 63) - 1, WORLDS).tolist())
-    return dataclasses.replace(
-        project, seeds=seeds, prepare=lambda world: unrelated(project.prepare(world), secret(seed, f"rng of {world}"))
-    )
-
-
-def unrelated(task: Task, seed: int) -> Task:
-    """The task with a generator of another seed, because its own tells the world's seed, and so the truth."""
-    given = (np.random.default_rng(seed) if isinstance(one, np.random.Generator) else one for one in task.arguments)
-    return task._replace(arguments=tuple(given))
+    return dataclasses.replace(project, seeds=seeds, prepare=prepare)
 
 
 def paper_value(project: Project) -> float:
@@ -83,10 +83,9 @@ def moved(task: Task, seen: Literal["boxes", "observations"], rng: np.random.Gen
     seen: what a call holds, boxes of two panoramas or observations in the body frame. The truth is moved with them.
     """
     turn, shift = rng.uniform(-np.pi, np.pi), rng.uniform(-20, 20, 2)
-    calls, poses, maps = [], [], {}
+    there = moved_map(task.arguments[0][-2 if seen == "boxes" else -1], turn, shift)
+    calls, poses = [], []
     for arguments, pose in zip(task.arguments, task.truth, strict=True):
-        semantic_map = arguments[2] if seen == "boxes" else arguments[1]
-        there = maps.setdefault(id(semantic_map), moved_map(semantic_map, turn, shift))
         if seen == "boxes":
             upper, lower, _, rig = arguments
             columns = int(rng.integers(0, rig.width))
@@ -96,31 +95,30 @@ def moved(task: Task, seen: Literal["boxes", "observations"], rng: np.random.Gen
         else:
             heading = rng.uniform(-np.pi, np.pi)
             calls.append((tuple(turned(one, -heading) for one in arguments[0]), there))
-        x, y = rotation_2d(turn) @ pose[:2] + shift
-        poses.append((x, y, wrap_angle(pose[2] + turn + heading)))
+        poses.append((*(rotation_2d(turn) @ pose[:2] + shift), wrap_angle(pose[2] + turn + heading)))
     return Task(tuple(calls), np.array(poses))
 
 
 def moved_map(semantic_map: SemanticMap, turn: float, shift: np.ndarray) -> SemanticMap:
     """The map turned by `turn` about the origin, then shifted, metres."""
-    places = semantic_map.positions @ rotation_2d(turn).T + shift
-    landmarks = [
-        dataclasses.replace(one, x=x, y=y) for one, (x, y) in zip(semantic_map.landmarks, places.tolist(), strict=True)
-    ]
-    walls = None if semantic_map.walls is None else np.asarray(semantic_map.walls) @ rotation_2d(turn).T + shift
+
+    def there(places: np.ndarray) -> np.ndarray:
+        return places @ rotation_2d(turn).T + shift
+
+    places = zip(semantic_map.landmarks, there(semantic_map.positions), strict=True)
+    landmarks = [dataclasses.replace(one, x=x, y=y) for one, (x, y) in places]
+    walls = None if semantic_map.walls is None else there(semantic_map.walls)
     return SemanticMap(landmarks, walls, semantic_map.name)
 
 
 def rolled(detection: Detection, columns: int, width: int) -> Detection:
     """A box on a panorama that is rolled by `columns` to the right: the rig's heading grows by 2 pi columns / width."""
-    u_min, v_min, u_max, v_max = detection.box
-    start = (u_min + columns) % width
-    return dataclasses.replace(detection, box=(start, v_min, start + u_max - u_min, v_max))
+    box = np.add(detection.box, [columns, 0, columns, 0])
+    return dataclasses.replace(detection, box=tuple(wrapped_box(box, width).tolist()))
 
 
 def turned(observation: Observation, angle: float) -> Observation:
     """An observation turned about the body's upward axis, its covariance too."""
     r = rotation_2d(angle)
     x, y = (r @ (observation.x, observation.y)).tolist()
-    covariance = None if observation.covariance is None else r @ observation.covariance @ r.T
-    return observation._replace(x=x, y=y, covariance=covariance)
+    return observation._replace(x=x, y=y, covariance=r @ observation.covariance @ r.T)

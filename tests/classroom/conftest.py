@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from course_lib.classroom.sandbox import SandboxError, library_copy, require_walls
+from course_lib.classroom.sandbox import SandboxError, copy_library, require_walls
 
 
 @pytest.fixture(scope="session")
@@ -16,5 +16,6 @@ def library(tmp_path_factory):
         if os.environ.get("CI") == "true":
             pytest.fail(str(error))
         pytest.skip(str(error))
-    with library_copy(tmp_path_factory.mktemp("library")) as library:
-        yield library
+    library = tmp_path_factory.mktemp("library")
+    copy_library(library)
+    return library

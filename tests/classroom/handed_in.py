@@ -3,6 +3,8 @@
 import json
 from pathlib import Path
 
+import nbformat
+
 from course_lib.classroom.assignment_cells import Assignment, read_assignments, tag_of
 from course_lib.classroom.model_answers import model_answers
 from course_lib.lessons.kit.exercises import find_exercise
@@ -14,12 +16,12 @@ def assignment_of(name: str) -> Assignment:
     return assignment
 
 
-def handed_in(path: Path, name: str, answers: dict[str, str]) -> Path:
-    """Write the notebook of a lesson with the source `answers[number]` in place of a stub; others are untouched."""
-    notebook = assignment_of(name).notebook()
+def handed_in(path: Path, name: str, answers: dict[str, str], release: Path | None = None) -> Path:
+    """Write the notebook of a lesson, or a released one, with `answers[number]` in place of a stub; others stay."""
+    notebook = nbformat.read(release, as_version=4) if release else assignment_of(name).notebook()
     for cell in notebook.cells:
         if tag_of(cell) == "exercise" and cell.metadata.get("exercise") in answers:
-            cell.source = answers[cell.metadata["exercise"]]
+            cell.source = answers[cell.metadata["exercise"]].replace("{stub}", cell.source)
         if cell.cell_type == "code":
             cell.outputs = []
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -32,9 +34,8 @@ def solved(name: str) -> dict[str, str]:
     return model_answers(assignment_of(name))
 
 
-def mistaken(number: str, which: int = 0) -> str:
+def mistaken(number: str) -> str:
     """Return a known mistake of an exercise as a student's cell: an edit that changes a part of the solution."""
     exercise = find_exercise(number)
-    lines = exercise.mistakes.splitlines()
-    edits = [line for line in lines if ARROW in line and not line.strip().startswith(WHOLE_BODY)]
-    return edited_text(exercise.solution, edits[which % len(edits)])
+    edits = (line for line in exercise.mistakes.splitlines() if ARROW in line)
+    return edited_text(exercise.solution, next(edit for edit in edits if not edit.strip().startswith(WHOLE_BODY)))

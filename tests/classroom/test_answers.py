@@ -19,10 +19,9 @@ def there_and_back(value):
     return decode(json.loads(json.dumps(encode(value))))
 
 
-@pytest.mark.parametrize(
-    "value",
-    [None, True, 3, -(2**63), 0.1, float("inf"), float("-inf"), "text", ..., (1, (2.0, [3, "a"]), []), [[1, 2], [3]]],
-)
+@pytest.mark.parametrize("value", [
+    None, True, 3, -(2**63), 0.1, float("inf"), float("-inf"), "text", ..., (1, (2.0, [3, "a"]), []), [[1, 2], [3]],
+])  # fmt: skip
 def test_plain_values_come_back_as_they_are(value):
     found = there_and_back(value)
     assert found == value
@@ -51,21 +50,10 @@ def test_what_holds_no_numbers_arrives_under_its_name():
         def __reduce__(self):
             raise AssertionError("nobody asks")
 
-    for value, name in [
-        (Bomb(), "Bomb"),
-        ({}, "dict"),
-        (np.array([None]), "ndarray"),
-        ({1}, "set"),
-        (10**10000, "int"),
-    ]:
-        found = there_and_back(value)
-        assert isinstance(found, Unreadable)
-        assert type(found).__name__ == name
-
-
-def test_a_view_of_more_than_may_be_sent_is_never_copied():
-    found = there_and_back(np.broadcast_to(1.0, (10**7,)))
-    assert isinstance(found, Unreadable)
+    values = [Bomb(), {}, {1}, 10**10000, np.array([None]), np.broadcast_to(1.0, (10**7,))]
+    found = [there_and_back(value) for value in values]
+    assert all(isinstance(one, Unreadable) for one in found)
+    assert [type(one).__name__ for one in found] == ["Bomb", "dict", "set", "int", "ndarray", "ndarray"]
 
 
 def test_a_class_of_ones_own_is_the_number_or_row_that_it_is_underneath():

@@ -4,14 +4,13 @@ import json
 import sqlite3
 import warnings
 
-import nbformat
 import pytest
 
-from course_lib.classroom.assignment_cells import tag_of
-from course_lib.classroom.handout import canary_of, write_json
+from course_lib.classroom.handout import canary_of
 from course_lib.classroom.leaks import find_leaks, solutions, teachers_words
 from course_lib.classroom.nbgrader_course import write_course
-from tests.classroom.handed_in import assignment_of, mistaken, solved
+from course_lib.classroom.student_copies import write
+from tests.classroom.handed_in import assignment_of, handed_in, mistaken, solved
 
 SEED = 31_415_926_535
 FORGED = """import IPython, sys
@@ -28,8 +27,7 @@ print(16)
 def course(library, tmp_path_factory):
     folder = tmp_path_factory.mktemp("handout")
     write_course(folder / "nbgrader", [assignment_of("06")], canary_of(SEED))
-    (folder / "grading").mkdir()
-    write_json(folder / "grading" / "seed.json", {"seed": SEED})
+    write(folder / "grading" / "seed.json", json.dumps({"seed": SEED}))
     return folder / "nbgrader"
 
 
@@ -43,25 +41,11 @@ def nbgrader_api(course):
     return NbGraderAPI(CourseDirectory(config=config), config=config)
 
 
-def submit(course, student, answers):
-    notebook = nbformat.read(course / "release" / "06" / "06.ipynb", as_version=4)
-    for cell in notebook.cells:
-        if tag_of(cell) == "exercise" and cell.metadata["exercise"] in answers:
-            cell.source = answers[cell.metadata["exercise"]].replace("{stub}", cell.source)
-    path = course / "submitted" / student / "06" / "06.ipynb"
-    path.parent.mkdir(parents=True)
-    nbformat.write(notebook, path)
-
-
 @pytest.mark.slow
 def test_five_students_through_nbgraders_own_steps(course):
     api, right = nbgrader_api(course), solved("06")
     made = api.generate_assignment("06")
     assert made["success"], made
-    released = nbformat.read(course / "release" / "06" / "06.ipynb", as_version=4)
-    for cell in released.cells:
-        if tag_of(cell) == "exercise":
-            assert cell.source.rstrip().endswith("...")
     words = teachers_words(SEED, canary_of(SEED)) | solutions([assignment_of("06")])
     assert find_leaks(course / "release", words) == []
     odd = right | {"06.1": f"%%time\ntable = {{}}\ntable.update(one=1)\n{right['06.1']}"}
@@ -70,7 +54,9 @@ def test_five_students_through_nbgraders_own_steps(course):
         "mistaken": right | {"06.2": mistaken("06.2")},
     }  # fmt: skip
     for student, answers in students.items():
-        submit(course, student, answers)
+        handed_in(
+            course / "submitted" / student / "06" / "06.ipynb", "06", answers, course / "release" / "06" / "06.ipynb"
+        )
         for step in (api.autograde, api.generate_feedback):
             done = step("06", student)
             assert done["success"], done
@@ -83,4 +69,3 @@ def test_five_students_through_nbgraders_own_steps(course):
     feedback = (course / "feedback" / "mistaken" / "06" / "06.html").read_text(encoding="utf-8")
     assert "06.2: " in feedback
     assert find_leaks(course / "feedback", teachers_words(SEED, canary_of(SEED))) == []
-    assert json.loads((course.parent / "grading" / "seed.json").read_text())["seed"] == SEED

@@ -9,15 +9,19 @@ import psutil
 import pytest
 
 from course_lib.classroom import sandbox, self_test
-from course_lib.classroom.judge import judge
+from course_lib.classroom.judge import Settings, judge
 from course_lib.classroom.sandbox import Limits, SandboxError, require_walls
 from course_lib.paths import REPOSITORY
 from tests.classroom.handed_in import handed_in, solved
 
 SHORT = Limits(call_seconds=0.5, seconds=2.0)
 """For what never ends, however fast the machine is; answers that end have the usual limits."""
-STUBS = {"06.1": "raw_score", "06.3": "min_likelihood"}
+FUNCTIONS = {"06.1": "raw_score", "06.3": "min_likelihood"}
 SCORE = "(1 - hidden) * alpha / (alpha + 0.02) + hidden * alpha / (alpha + 2)"
+
+
+def raw_score(body: str) -> str:
+    return f"def raw_score(hidden, alpha):\n{textwrap.indent(textwrap.dedent(body).strip(), '    ')}\n"
 
 
 @pytest.fixture
@@ -25,10 +29,9 @@ def graded(library, tmp_path):
     """Judge a body of `raw_score` (06.1) beside a right answer, which must count whatever the body does."""
     right = solved("06")["06.3"]
 
-    def run(body: str, before: str = "", limits: Limits | None = None):
-        source = f"{before}\ndef raw_score(hidden, alpha):\n{textwrap.indent(textwrap.dedent(body).strip(), '    ')}\n"
-        path = handed_in(tmp_path / "06.ipynb", "06", {"06.1": source, "06.3": right})
-        hostile, beside = judge(path, STUBS, 1, library, limits or Limits()).answers
+    def run(body: str, limits: Limits | None = None):
+        path = handed_in(tmp_path / "06.ipynb", "06", {"06.1": raw_score(body), "06.3": right})
+        hostile, beside = judge(path, Settings(FUNCTIONS, 1, library, limits or Limits())).answers
         assert (beside.status, beside.points) == ("right", 4), beside
         left = [one.pid for one in psutil.process_iter(["cmdline"]) if str(library) in (one.info["cmdline"] or [])]
         assert not left, "processes that answers left behind"
@@ -133,9 +136,8 @@ def alone(library, tmp_path):
     """Judge a body of `raw_score` (06.1), which may take its whole sandbox down."""
 
     def run(body: str, limits: Limits):
-        source = f"def raw_score(hidden, alpha):\n{textwrap.indent(textwrap.dedent(body).strip(), '    ')}\n"
-        path = handed_in(tmp_path / "06.ipynb", "06", {"06.1": source})
-        return judge(path, {"06.1": "raw_score"}, 1, library, limits._replace(memory_mb=800)).answers[0]
+        path = handed_in(tmp_path / "06.ipynb", "06", {"06.1": raw_score(body)})
+        return judge(path, Settings({"06.1": "raw_score"}, 1, library, limits._replace(memory_mb=800))).answers[0]
 
     return run
 
@@ -211,11 +213,6 @@ def test_an_answer_finds_no_reference_seed_or_other_student(graded):
         return None if names or texts else {SCORE}
         """)
     assert found.status == "right", found
-
-
-def test_without_walls_the_same_process_answers(library, tmp_path):
-    path = handed_in(tmp_path / "06.ipynb", "06", solved("06"))
-    assert [one.status for one in judge(path, STUBS, 1, library, Limits(), trust=True).answers] == ["right"] * 2
 
 
 @pytest.mark.parametrize("missing", ["bwrap", "pyseccomp"])

@@ -7,35 +7,27 @@ import pytest
 
 from course_lib.classroom.submissions import Roster, SubmissionError, collect, read_roster, whose
 
-LESSONS = {
-    "06": "06_likelihood_and_weights",
-    "07": "07_estimate",
-    "20": "20_your_own_data",
-    "P1": "P1_the_whole_filter",
-}
+LESSONS = {"06": "06_likelihood_and_weights", "20": "20_your_own_data", "P1": "P1_the_whole_filter"}
 
 
-@pytest.mark.parametrize(
-    ("path", "student", "guess"),
-    [
-        ("alice/06_likelihood_and_weights.ipynb", "alice", "06"),
-        ("alice/homework.ipynb", "alice", ""),
-        ("alice/06/06.ipynb", "alice", "06"),
-        ("alice_06.ipynb", "alice", "06"),
-        ("alice_06_likelihood_and_weights (1).ipynb", "alice", "06"),
-        ("alice_P1_v2.py", "alice", "P1"),
-        ("nina_06_2026-11-20.ipynb", "nina", "06"),
-        ("nina.ipynb", "nina", ""),
-        ("Alice Doe_12345_assignsubmission_file_/homework.ipynb", "Alice Doe", ""),
-        ("Alice Doe_12345_assignsubmission_file_/06_likelihood_and_weights.ipynb", "Alice Doe", "06"),
-        ("doealice_12345_67890_homework.ipynb", "doealice", ""),
-        ("doealice_LATE_12345_67890_06_likelihood_and_weights-1.ipynb", "doealice", "06"),
-        ("bob-jones/week 3/06.ipynb", "bob-jones", "06"),
-        ("eve/bob_1_1_06.py", "eve", "06"),
-        ("eve/bob_777_assignsubmission_file_.py", "eve", ""),
-        ("06_likelihood_and_weights_carol.ipynb", "carol", "06"),
-    ],
-)
+@pytest.mark.parametrize(("path", "student", "guess"), [
+    ("alice/06_likelihood_and_weights.ipynb", "alice", "06"),
+    ("alice/homework.ipynb", "alice", ""),
+    ("alice/06/06.ipynb", "alice", "06"),
+    ("alice_06.ipynb", "alice", "06"),
+    ("alice_06_likelihood_and_weights (1).ipynb", "alice", "06"),
+    ("alice_P1_v2.py", "alice", "P1"),
+    ("nina_06_2026-11-20.ipynb", "nina", "06"),
+    ("nina.ipynb", "nina", ""),
+    ("Alice Doe_12345_assignsubmission_file_/homework.ipynb", "Alice Doe", ""),
+    ("Alice Doe_12345_assignsubmission_file_/06_likelihood_and_weights.ipynb", "Alice Doe", "06"),
+    ("doealice_12345_67890_homework.ipynb", "doealice", ""),
+    ("doealice_LATE_12345_67890_06_likelihood_and_weights-1.ipynb", "doealice", "06"),
+    ("bob-jones/week 3/06.ipynb", "bob-jones", "06"),
+    ("eve/bob_1_1_06.py", "eve", "06"),
+    ("eve/bob_777_assignsubmission_file_.py", "eve", ""),
+    ("06_likelihood_and_weights_carol.ipynb", "carol", "06"),
+])  # fmt: skip
 def test_student_and_lesson_are_told_by_place_and_name(path, student, guess):
     assert whose(Path(path), LESSONS, Roster()) == (student, guess)
 

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from course_lib.classroom import worlds
-from course_lib.classroom.judge import judge
+from course_lib.classroom.judge import Settings, judge
 from course_lib.classroom.points import SCORE_POINTS
-from course_lib.classroom.sandbox import Limits
 from course_lib.classroom.worlds import LINES, graded_project, moved, paper_value, score_points, score_sentence
 from course_lib.lessons.kit.exercises import lesson_exercises, lesson_numbers
 from course_lib.lessons.kit.projects import find_project, outcomes, project_names
@@ -53,8 +52,8 @@ LOOKED_UP = {
 def test_a_truth_that_the_arguments_would_tell_is_not_there(library, tmp_path, monkeypatch, number):
     monkeypatch.setattr(worlds, "WORLDS", 1)
     (tmp_path / "a.py").write_text("def {}:{}".format(*LOOKED_UP[number]), encoding="utf-8")
-    stubs = {number: LOOKED_UP[number][0].split("(")[0]}
-    (found,) = judge(tmp_path / "a.py", stubs, 5, library, Limits(), scores=True).answers
+    settings = Settings({number: LOOKED_UP[number][0].split("(")[0]}, 5, library, scores=True)
+    (found,) = judge(tmp_path / "a.py", settings).answers
     assert found.points == (SCORE_POINTS / 4 if number == "P1" else 0), found  # of P1's: it runs
 
 

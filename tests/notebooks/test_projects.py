@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from course_lib.classroom.points import BY_HAND, SCORE_POINTS, points_of
+from course_lib.classroom.points import BY_HAND, SCORE_POINTS, most_of
 from course_lib.lessons.kit.exercises import find_exercise, judge, lesson_exercises
 from course_lib.lessons.kit.forbidden import forbidden_module
 from course_lib.lessons.kit.projects import find_project, is_better, one_outcome, project_names, stored_rivals
@@ -36,7 +36,7 @@ def test_the_title_promises_and_says_how_long_and_how_it_is_marked_and_no_hidden
     assert 2 <= float(re.search(r"\*\*(\d(?:\.5)?) hours", title)[1]) <= 4
     rubric = project.markdown.split("## Rubric")[1]
     points = [int(p) for p in re.findall(r"\|\s*(\d+)\s*\|$", rubric, re.M)]
-    stages = sum(points_of(exercise) for exercise in lesson_exercises(project.number))
+    stages = sum(most_of(exercise.number) for exercise in lesson_exercises(project.number))
     assert points == [stages, SCORE_POINTS, BY_HAND], "one scale, that of `course.py grade`"
     assert re.search(rf"\*\*{sum(points)} points\*\*", rubric), "the rubric says the sum of its points"
 

@@ -8,8 +8,3 @@ PAGES = jinja2.Environment(
     loader=jinja2.FileSystemLoader(Path(__file__).parent), autoescape=jinja2.select_autoescape(), trim_blocks=True,
     lstrip_blocks=True, keep_trailing_newline=True, undefined=jinja2.StrictUndefined,
 )  # fmt: skip
-
-
-def template(name: str) -> jinja2.Template:
-    """Return a template of this folder."""
-    return PAGES.get_template(name)

@@ -5,7 +5,15 @@ import re
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.exercises import Exercise, UnknownExerciseError, check, find_exercise, is_stub, judge
+from course_lib.lessons.kit.exercises import (
+    Exercise,
+    UnknownExerciseError,
+    check,
+    find_exercise,
+    is_stub,
+    judge,
+    right_on,
+)
 
 
 def double(x):
@@ -144,3 +152,21 @@ def test_what_the_function_prints_is_shown_once_and_not_for_every_input(capsys):
 def test_an_unknown_number_names_those_that_there_are(number):
     with pytest.raises(UnknownExerciseError, match=r"there are .*03\.1"):
         check(number, stub)
+
+
+def test_right_inputs_are_counted_by_the_function_that_fits_best():
+    either = Exercise("99.2", np.median, lambda rng: (rng.normal(size=9),), others=(np.mean,))
+    arguments = either.draw(np.random.default_rng(1))
+    answers = [np.mean(*given) for given in arguments]
+    assert right_on(either, arguments, answers) == [True] * len(arguments)
+    assert right_on(either, arguments, [0.0, *answers[1:]]) == [False, *[True] * (len(arguments) - 1)]
+    mixed = [np.median(*given) if i % 2 else np.mean(*given) for i, given in enumerate(arguments)]
+    assert sum(right_on(either, arguments, mixed)) <= (len(arguments) + 1) / 2
+
+
+def test_right_inputs_of_an_exercise_with_many_right_answers_are_those_that_it_accepts():
+    exercise = find_exercise("14.3")
+    arguments = exercise.draw(np.random.default_rng(1))
+    answers = [exercise.solution(*given) for given in arguments]
+    assert right_on(exercise, arguments, answers) == [True] * len(arguments)
+    assert right_on(exercise, arguments, [None, -1.0, *answers[2:]])[:3] == [False, False, True]
