@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.beyond.being_lost import MIN_PIXELS
-from course_lib.beyond.six_dof.covariance import SCALE, fused, information, with_rivals
+from course_lib.beyond.six_dof.covariance import PREDICTED, SCALE, fused, information, with_rivals
 from course_lib.beyond.six_dof.poses import distinct, local, retract
 from course_lib.beyond.six_dof.prediction import MeasuredMotion, Rival
 from course_lib.beyond.six_dof.refinement import NormalEquations, solve, surface_normals
@@ -49,9 +49,18 @@ class View(NamedTuple):
     normals: np.ndarray  # `(H, W, 3)`, NaN also beside an edge.
 
     @classmethod
-    def of(cls, measured: np.ndarray, camera: DepthCamera) -> "View":
-        """Return the view of a depth image `(H, W)`."""
-        (points,), (normals,) = surface_normals(np.asarray(measured, dtype=np.float64)[None], camera)
+    def of(cls, depth: np.ndarray, camera: DepthCamera, pixels: int) -> "View":
+        """Return the view of every k-th row and column of a depth image `(H, W)`, so that about `pixels` are left.
+
+        Their rays stay what they were: u / k, v / k. An image of another size, in which a pixel has the depth of its
+        neighbour's ray, has the same errors at the same pixels wherever the camera is, and so says that it stands still.
+        """
+        k = max(1, round(np.sqrt(depth.size / pixels)))
+        with np.errstate(invalid="ignore"):
+            thinned = np.where((depth > camera.near) & (depth < camera.far), depth, np.nan)[::k, ::k]
+        (height, width), lens = thinned.shape, [value / k for value in (camera.fx, camera.fy, camera.cx, camera.cy)]
+        camera = DepthCamera(width, height, *lens, camera.near, camera.far)
+        (points,), (normals,) = surface_normals(thinned[None].astype(np.float64), camera)
         return cls(camera, points, normals)
 
 
@@ -161,7 +170,7 @@ def image_motion(
         poses, scores = poses[kept], scores[kept]
     has_partner, n, r = paired(old, points, poses[0])
     shown = information(points[has_partner], n, new.normals[has_normal][has_partner], r)
-    covariance, gain = fused(np.diag(spread**2), PIXELS * shown)
+    covariance, gain = fused(np.diag((PREDICTED * spread) ** 2), PIXELS * shown)
     covariance += np.diag(np.repeat(FLOOR, 3) ** 2)
     fused_pose = retract(predicted, gain @ local(predicted, poses[0]))
     score, share, agreeing = (float(x[0]) for x in _scores(old, points, fused_pose[None]))

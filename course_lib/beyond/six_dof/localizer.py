@@ -55,7 +55,7 @@ from course_lib.beyond.six_dof.prediction import (
     MotionPrediction,
     Rival,
 )
-from course_lib.beyond.six_dof.schedule import LAYERS, SECOND_LOOK, STEPS, SURE_LAYERS, Layer, Step, pyramid
+from course_lib.beyond.six_dof.schedule import COARSE, LAYERS, MIDDLE, SECOND_LOOK, STEPS, SURE_LAYERS, Layer, Step, pyramid
 from course_lib.depth_mcl.likelihood import checked_image, valid_pixels
 from course_lib.depth_mcl.localizer import NoMeasurementWarning, checked_start
 from course_lib.depth_mcl.motion import TANGENT_SPACE
@@ -172,16 +172,16 @@ class AnnealedLocalizer:
             level.measure(depth)
         if not valid_pixels(self.levels[-1].measured).any():
             return self._not_measured(measured)
-        measured = self._measured_motion(measured)
+        measured = self._measured_motion(depth, measured)
         found, spread = self._look_twice(prediction.spread(measured), measured)
         image_says = self._judge.judge_image(found.agreement)
         found, image_says = self._fuse(found, image_says, spread, measured)
         status = self._judge.judge(image_says, found.agreement, self._covariance, bool(found.rivals))
         return self._estimate(found, status)
 
-    def _measured_motion(self, told: MeasuredMotion | None) -> MeasuredMotion | None:
+    def _measured_motion(self, depth: np.ndarray, told: MeasuredMotion | None) -> MeasuredMotion | None:
         """Return the motion since the last image, of both images and what an odometer told; remember this image."""
-        before, self._views = self._views, [View.of(level.measured, level.renderer.camera) for level in self.levels[:2]]
+        before, self._views = self._views, [View.of(depth, self.renderer.camera, pixels) for pixels in (COARSE, MIDDLE)]
         if before is None or not self.image_motion:
             return told
         if told is not None:

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from course_lib.beyond import AnnealedLocalizer
-from course_lib.beyond.six_dof.poses import retract
+from course_lib.beyond.six_dof.poses import motion_between, retract
 from course_lib.beyond.six_dof.refinement import refine
 from course_lib.beyond.six_dof.schedule import STEPS, pyramid
 from course_lib.depth_mcl import DepthCamera, DepthRenderer, MonteCarloLocalizer
@@ -88,9 +88,8 @@ def slide(pillar: bool = False, odometer: bool = False) -> tuple[np.ndarray, np.
         ((-50, 1.2, 0.0), (50, 1.3, 2.5)), ((4.0, 0.9, 0.0), (4.3, 1.2, 2.5)),
     ]  # fmt: skip
     rng, camera = np.random.default_rng(SEED), DepthCamera.sr4000().resized(88, 72)
-    true = np.array([0.0, 0.1, 1.3, 0.0, pitch := 0.05, yaw := 0.1])
-    # The step along the world's x, in the camera's own axes (right, down, forward).
-    told = 0.1 * np.array([np.sin(yaw), np.cos(yaw) * np.sin(pitch), np.cos(yaw) * np.cos(pitch), 0, 0, 0])
+    true = np.array([0.0, 0.1, 1.3, 0.0, 0.05, 0.1])
+    told = motion_between(true, true + 0.1 * np.eye(6)[0])  # a step along the world's x, in the body's axes
     errors, found = [], []
     with DepthRenderer(box_map(*boxes[: 5 if pillar else 4]), camera) as renderer:
         localizer = AnnealedLocalizer(renderer, seed=SEED)
