@@ -74,9 +74,7 @@ def test_training_pictures_go_on_where_they_stopped(tmp_path):
 
 FINALE_SEED = 10_001
 MESH = DepthSurveyModel(
-    stations=2,
-    scanner=ScannerModel(step_deg=2.0),
-    fusion=FusionModel(voxel=0.1, truncation=0.3, triangles=3_000),
+    stations=2, scanner=ScannerModel(step_deg=2.0), fusion=FusionModel(voxel=0.1, truncation=0.3, triangles=3_000)
 )
 SMALL_FINALE = finale_data.FinaleModels(
     recording=RecordingModels(survey=RoomSurveyModel(width=320, fewest_pixels=5)), mesh=MESH
