@@ -16,7 +16,7 @@ from course_lib.lessons.kit.values import agree_all, parts
 EXERCISES = [exercise for number in lesson_numbers() for exercise in lesson_exercises(number)]
 every_exercise = pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)
 # 0 is the seed of `check`. What is right or wrong must not hang on one set of inputs.
-SEEDS = (0, 1, 2)
+SEEDS = (0, 1)
 
 RIGHT_ANSWERS = [
     answer
