@@ -1,4 +1,4 @@
-"""Every exercise: its solution is right, each of its mistakes gets its own hint, no general slip passes."""
+"""Every exercise: its solution is right, in any form and by another way, and each of its mistakes gets its own hint."""
 
 import copy
 import importlib
@@ -8,10 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.attempt import attempt
 from course_lib.lessons.kit.exercises import fault, find_exercise, judge, lesson_exercises, lesson_numbers
-from course_lib.lessons.kit.general_mistakes import LIMIT, argument_slips, code_slips, value_slips
-from course_lib.lessons.kit.values import agree_all, parts
+from course_lib.lessons.kit.values import parts
 
 EXERCISES = [exercise for number in lesson_numbers() for exercise in lesson_exercises(number)]
 every_exercise = pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)
@@ -42,28 +40,6 @@ def test_the_solution_is_right_and_each_mistake_gets_its_own_hint(exercise):
         for mistake in exercise.known:
             for function in mistake.functions:
                 assert fault(exercise, inputs, answers_of(function, inputs)) == mistake.hint
-
-
-@every_exercise
-def test_no_general_slip_passes(exercise):
-    """If a slip changes what comes out beyond the tolerance, it is wrong."""
-    if exercise.verify is not None:
-        pytest.skip("this exercise has many right answers")
-    inputs = exercise.draw(np.random.default_rng(0))
-    wanted = answers_of(exercise.solution, inputs)
-    slips = [*argument_slips(exercise.solution, inputs[-1]), *code_slips(exercise.solution)]
-    for _, function in [*slips, *((s, lambda *g, f=f: f(exercise.solution(*g))) for s, f in value_slips(wanted))]:
-        calls = [attempt(function, copy.deepcopy(given), LIMIT) for given in inputs[:1]]
-        if all(call.failure is None for call in calls):
-            calls += [attempt(function, copy.deepcopy(given), LIMIT) for given in inputs[1:]]
-        if any(call.failure is not None for call in calls):
-            continue  # it is noticed anyway
-        answers = [call.value for call in calls]
-        passed = fault(exercise, inputs, answers) is None
-        assert not passed or any(
-            agree_all(answers, answers_of(right, inputs), exercise.tolerance)
-            for right in (exercise.solution, *exercise.others)
-        )
 
 
 FORMS = {
