@@ -4,8 +4,6 @@ A run is stopped with SIGKILL at one of the things that it does to files (Python
 """
 
 import contextlib
-import inspect
-import json
 import os
 import shutil
 import signal
@@ -21,12 +19,6 @@ from course_lib.files import atomic_write, run_folder
 pytest.importorskip("resource", reason="kill -9 is POSIX's")
 ROOT = Path(__file__).parents[1]
 NAMES = ("a.json", "b.csv", "pictures/c.png")
-COMMANDS = {
-    "localize": "localize --map data/corridor/planar_map.ply --sequence data/corridor/wagon --dof xyyaw --frames 3",
-    "locate": "locate --upper data/room/experiment_2/03_a_upper.jpg --lower data/room/experiment_2/03_a_lower.jpg "
-    "--baseline 0.3 --map data/room/semantic_map.json",
-}
-ENDS = {".json": b"}\n", ".csv": b"\n", ".txt": b"\n", ".html": b"", ".png": b"IEND\xaeB`\x82"}
 
 
 def watch(stage, chosen):
@@ -94,34 +86,6 @@ def test_a_folder_is_the_old_the_new_or_seen_as_not_whole_wherever_its_run_is_ki
         assert set(files) == set(NAMES)
         states.add((is_whole, *sorted(set(files.values()))))
     assert states == {(True, b"old"), (False, b"old"), (False, b"new", b"old"), (False, b"new"), (True, b"new")}
-
-
-def run_command(name, out, step):
-    """Run a command of the course in a process of its own, killed at that step (0: never); it prints its steps."""
-    program = f"import os, signal, sys\n{inspect.getsource(watch)}\nsteps = watch({str(out.parent)!r}, {step})\n"
-    program += "from course_lib.cli import main\ncode = main(sys.argv[1:])\nprint(len(steps))\nsys.exit(code)"
-    command = [sys.executable, "-c", program, *COMMANDS[name].split(), "--out", str(out)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["localize", pytest.param("locate", marks=pytest.mark.release)])
-def test_a_command_that_is_killed_leaves_the_old_or_whole_files_without_run_json(name, tmp_path):
-    out = tmp_path / "stage" / "out"
-    out.parent.mkdir()
-    done = run_command(name, out, 0)
-    assert done.returncode == 0, done.stderr
-    assert set(json.loads((out / "run.json").read_bytes())["files"]) == set(tree(out)) - {"run.json"}
-    steps = int(done.stdout.splitlines()[-1])
-    for step in (steps // 2, steps - 4):  # in the midst of the work, and while the files take their places
-        shutil.rmtree(out)
-        out.mkdir()
-        (out / "run.json").write_text('{"command": "old"}')
-        assert run_command(name, out, step).returncode == -signal.SIGKILL
-        files = tree(out)
-        assert files == {"run.json": b'{"command": "old"}'} or "run.json" not in files
-        files.pop("run.json", None)
-        assert all(content.endswith(ENDS[Path(file).suffix]) for file, content in files.items())
 
 
 @pytest.mark.skipif(subprocess.call("unshare -rm true 2>/dev/null", shell=True) != 0, reason="no mount of one's own")

@@ -1,7 +1,8 @@
 """NaN at every door: each number that a public function takes is made NaN in turn, and refused by name.
 
 Only where NaN is the word for "nothing was measured" (depth images, points, hue) does it pass, and then it counts for
-nothing. No door gives an answer made of NaN without a word. The doors are the packages' public names.
+nothing, as the tests of the equations say. No door gives an answer made of NaN without a word. The doors are the
+packages' public names.
 """
 
 from pathlib import Path
@@ -132,26 +133,3 @@ def test_a_number_that_is_none_is_refused_by_name(door, k, bad):
         function(*spoiled)
     # Said by the door, not by whatever came upon it further in.
     assert Path(told.traceback[-1].path).is_relative_to(PACKAGE), told.traceback[-1]
-
-
-def test_a_pixel_without_measurement_counts_for_nothing(rng):
-    measured, simulated = rng.uniform(1, 3, (5, 4)), rng.uniform(1, 3, (7, 5, 4))
-    measured[:, 1] = np.nan
-    others = [0, 2, 3]
-    left_out = depth_mcl.likelihood(measured[:, others], simulated[:, :, others])
-    assert depth_mcl.likelihood(measured, simulated) == pytest.approx(left_out, rel=1e-12)
-
-
-def test_points_without_measurement_fall_nowhere(rng):
-    points = CAMERA.points(np.full(CAMERA.shape, 2.0))
-    points[rng.random(CAMERA.shape) < 0.3] = np.nan
-    with DepthRenderer(room(), CAMERA) as renderer:
-        drawn = renderer.render_points(points)
-    assert np.array_equal(np.isnan(drawn), np.isnan(points[..., 2]))
-
-
-def test_a_grey_object_is_compared_without_its_hue():
-    grey = Observation("sofa", 0.0, 0.0, np.nan, 50.0)
-    told = spherical_stereo.penalty(grey, MAP.landmarks[0], np.zeros(2), np.zeros(2))
-    assert told.hue == 0.0
-    assert np.isfinite(told.total)

@@ -42,7 +42,6 @@ def _corridor(parser: argparse.ArgumentParser) -> None:
     _choice(parser, "--recording", told, ("own", "shipped"), "own")
     told = "measure instead what the simulator's idealizations are worth, on small images (seeds 10001-10003)"
     options.add_flag(parser, "--idealizations", told)
-    options.add_flag(parser, "--kindnesses", argparse.SUPPRESS, dest="idealizations")  # its name before
     told = "the paper's experiment on a wagon (default); 6: cameras carried by hand, the annealed filter beside "
     _choice(parser, "--dof", f"xyyaw: {told}the paper's and the floor", ("xyyaw", "6"), "xyyaw")
     told = "with --seeds: rows of the table by name, with commas, among them proposed and fallon (default: all)"

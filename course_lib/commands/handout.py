@@ -13,12 +13,7 @@ from course_lib.commands.output import progress_bar
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add(
-        "lessons",
-        nargs="*",
-        metavar="NN",
-        help="lessons and projects, such as 03, F1 or P1 (default: all)",
-    )
+    add("lessons", nargs="*", metavar="NN", help="lessons and projects, such as 03, F1 or P1 (default: all)")
     told = "where the folder goes: new, empty, or a handout that is replaced as a whole (default: handout/ in the "
     add("--out", type=Path, metavar="DIR", help=told + "course's folder, which git ignores)")
     add_flag(parser, "--solved", "put the solved lessons into the teacher's folder, too: for the screen")

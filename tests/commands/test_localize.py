@@ -33,6 +33,8 @@ def test_the_wagon_is_followed_in_x_y_and_yaw(corridor_folder, tmp_path, told):
     assert all(0.4 < float(row["score"]) < 1 and float(row["position_error_m"]) < 0.3 for row in rows)
     assert read_tum(tmp_path / "trajectory.txt")[1].shape == (6, 4, 4)
     assert (tmp_path / "track.png").read_bytes().startswith(b"\x89PNG")
+    files = {path.name for path in tmp_path.iterdir()} - {"run.json"}
+    assert set(json.loads((tmp_path / "run.json").read_text())["files"]) == files
     assert "<title>Path of wagon in map.ply</title>" in (tmp_path / "track.html").read_text()
 
 

@@ -158,28 +158,6 @@ def test_what_opens_for_a_lesson_is_its_copy_and_what_cannot_be_is_told(small, n
     assert contents(small) == before
 
 
-def test_git_pull_over_a_tree_in_which_a_student_has_worked(course, tmp_path):
-    git(tmp_path, "clone", "--quiet", "--local", str(course), "upstream")
-    git(tmp_path, "clone", "--quiet", "--local", "upstream", "clone")
-    work = tmp_path / "clone" / "work"
-    make_copies(work.parent)
-    begin(work / LESSON_06)
-    (work / "record").mkdir()
-    (work / "record" / "06.json").write_text("{}")
-    of_the_student = contents(work)
-    for name in (LESSON_06, "07_estimate_and_resample.ipynb"):
-        write_lesson(tmp_path / "upstream" / "notebooks" / name, "another text")
-    git(tmp_path / "upstream", "commit", "--quiet", "-a", "-m", "lessons change")
-    git(work.parent, "pull", "--quiet", "--ff-only")
-    assert git(work.parent, "status", "--porcelain") == ""
-    assert contents(work) == of_the_student
-    (told,) = make_copies(work.parent)
-    assert told.startswith("Lesson 06 has changed")
-    renewed = contents(work)
-    assert {name for name in renewed if renewed[name] == of_the_student[name]} >= {LESSON_06, "record/06.json"}
-    assert renewed["07_estimate_and_resample.ipynb"] != of_the_student["07_estimate_and_resample.ipynb"]
-
-
 def test_who_worked_in_the_courses_own_notebook_is_told_and_loses_nothing(clone):
     begin(clone / "notebooks" / LESSON_06)
     told = make_copies(clone)

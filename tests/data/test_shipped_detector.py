@@ -27,7 +27,7 @@ def test_the_experiments_room_scores_as_stored(detector, recording):
     assert score.recall == pytest.approx(stored["recall"], abs=0.04)
 
 
-@pytest.mark.parametrize("shift", range(0, 1280, 128))
+@pytest.mark.parametrize("shift", range(0, 1280, 256))
 def test_a_sofa_is_found_exactly_once_wherever_the_seam_is(detector, recording, shift):
     pair = recording.pairs[0]
     boxes = [thing.visible_box for thing in pair.upper_objects if thing.label == "sofa"]
@@ -40,9 +40,9 @@ def test_a_sofa_is_found_exactly_once_wherever_the_seam_is(detector, recording, 
 
 @pytest.mark.slow
 def test_weighted_by_covariance_a_turn_never_moves_the_pose_by_more_than_a_decimetre(recording, semantic_map, detector):
-    """Of four pairs with their images rolled by two numbers of columns, 640 of them half a turn."""
+    """Of two pairs with their images rolled by two numbers of columns, 640 of them half a turn."""
     localizer = SemanticLocalizer(recording.rig, semantic_map, detector, reject_implausible=False)
-    results = [localize_pair(pair, localizer) for pair in recording.pairs[4:12:2]]
+    results = [localize_pair(pair, localizer) for pair in recording.pairs[4:12:4]]
     rolled = turn_the_rig(results, localizer, (97, 640))
     found = turn_summary(weigh_by_covariance(rolled, localizer))
     assert found["within_0.10_m"] == found["associations_agree"]

@@ -12,7 +12,7 @@ from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normali
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer, NoMeasurementWarning, SlowFilterWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES, propagate
 from course_lib.depth_mcl.particle_filter import Scheme, initial_particles, resample, weighted_mean_state
-from course_lib.geometry import pose_matrix, wrap_angle
+from course_lib.geometry import pose_matrix, state_from_matrix, wrap_angle
 from course_lib.rendering.renderer import DepthRenderer
 from tests.rendering.shapes import SMALL, furnished_room, room, room_depth
 
@@ -56,6 +56,19 @@ def test_the_filter_follows_a_walk(renderer, motion, weighting, bound):
         assert estimate.weights.sum() == pytest.approx(1)
         assert 1 <= estimate.ess <= 150 + 1e-9
         assert np.linalg.eigvalsh(estimate.covariance).min() > -1e-12
+
+
+def test_a_filter_knows_no_direction_of_the_world():
+    """The same draws in a room that is drawn askew: the same particles and the same answer, turned."""
+    world, estimates = pose_matrix([1.0, 2.0, 0, 0, 0, 0.7]), []
+    for moved in (np.eye(4), world):
+        with DepthRenderer(furnished_room().transformed(moved), SMALL, "ray") as renderer:
+            localizer = MonteCarloLocalizer(renderer, 60, SIGMA, seed=1)
+            localizer.initialize(state_from_matrix(moved @ pose_matrix(START)))
+            estimates.append(localizer.step(room_depth(SMALL, START)[0]))
+    first, second = estimates
+    assert pose_matrix(second.particles) == pytest.approx(world @ pose_matrix(first.particles), abs=1e-9)
+    assert pose_matrix(second.state) == pytest.approx(world @ pose_matrix(first.state), abs=1e-3)
 
 
 @pytest.mark.parametrize("scheme", get_args(Scheme))

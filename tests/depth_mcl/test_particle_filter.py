@@ -135,7 +135,7 @@ def test_filterpy_draws_the_same_particles_from_the_same_random_numbers(scheme, 
 
 
 def test_bad_weights_and_unknown_schemes_are_refused(rng):
-    for w in ([0.5, 0.6], [1.5, -0.5], [np.nan, 1.0], [1.0]):
+    for w in ([0.5, 0.6], [0.2, 0.3], [1.5, -0.5], [np.nan, 1.0], [1.0]):
         with pytest.raises(ValueError, match="weights"):
             weighted_mean_state(np.zeros((2, 6)), w)
     for w in ([], [0.0, 0.0], [np.nan, 1.0], [-0.1, 1.1], [[0.5, 0.5]]):

@@ -219,14 +219,3 @@ def test_a_pose_is_read_from_a_matrix_poses_or_a_trajectory_and_with_few_digits_
         rotation = rotation_to_z_up(up)[:3, :3]
         assert np.array_equal(rotation @ axis, [0, 0, 1])
         assert np.linalg.det(rotation) == pytest.approx(1)
-
-
-@pytest.mark.parametrize("name", ["poses.txt", "up.txt", "groundtruth.txt", "path_on_floor.txt", "gravity.txt"])
-@pytest.mark.parametrize("target", [None, "nowhere", "."])
-def test_what_may_be_missing_may_not_be_something_else(folder, name, target):
-    """A folder, a broken link or a link to a folder in its place was read as if the file had been left out."""
-    (folder / name).unlink(missing_ok=True)
-    read_sequence(folder)
-    (folder / name).symlink_to(target) if target else (folder / name).mkdir()
-    with pytest.raises((SequenceError, FileNotFoundError), match=name):
-        read_sequence(folder)

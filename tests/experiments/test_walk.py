@@ -23,4 +23,3 @@ def test_each_offset_of_each_thinning_is_run_and_the_floor_once(corridor_folder,
     told = [(row["method"], row["every"], len(row["run"]["status"])) for row in rows]
     assert told == [("annealed", 1, 5), ("annealed", 2, 3), ("annealed", 2, 2), ("floor", 1, 5)]
     assert np.median(rows[0]["run"]["position_m"]) < 0.05
-    assert rows == walk.room_walk(10_001, ["annealed", "floor"], [1, 2])

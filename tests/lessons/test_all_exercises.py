@@ -1,4 +1,4 @@
-"""Every exercise: its solution is right, each of its mistakes gets its own hint, no general slip passes."""
+"""Every exercise: its solution is right, in any form and by another way, and each of its mistakes gets its own hint."""
 
 import copy
 import importlib
@@ -8,15 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.attempt import attempt
 from course_lib.lessons.kit.exercises import fault, find_exercise, judge, lesson_exercises, lesson_numbers
-from course_lib.lessons.kit.general_mistakes import LIMIT, argument_slips, code_slips, value_slips
-from course_lib.lessons.kit.values import agree_all, parts
+from course_lib.lessons.kit.values import parts
 
 EXERCISES = [exercise for number in lesson_numbers() for exercise in lesson_exercises(number)]
 every_exercise = pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)
 # 0 is the seed of `check`. What is right or wrong must not hang on one set of inputs.
-SEEDS = (0, 1, 2)
+SEEDS = (0, 1)
 
 RIGHT_ANSWERS = [
     answer
@@ -44,28 +42,6 @@ def test_the_solution_is_right_and_each_mistake_gets_its_own_hint(exercise):
                 assert fault(exercise, inputs, answers_of(function, inputs)) == mistake.hint
 
 
-@every_exercise
-def test_no_general_slip_passes(exercise):
-    """If a slip changes what comes out beyond the tolerance, it is wrong."""
-    if exercise.verify is not None:
-        pytest.skip("this exercise has many right answers")
-    inputs = exercise.draw(np.random.default_rng(0))
-    wanted = answers_of(exercise.solution, inputs)
-    slips = [*argument_slips(exercise.solution, inputs[-1]), *code_slips(exercise.solution)]
-    for _, function in [*slips, *((s, lambda *g, f=f: f(exercise.solution(*g))) for s, f in value_slips(wanted))]:
-        calls = [attempt(function, copy.deepcopy(given), LIMIT) for given in inputs[:1]]
-        if all(call.failure is None for call in calls):
-            calls += [attempt(function, copy.deepcopy(given), LIMIT) for given in inputs[1:]]
-        if any(call.failure is not None for call in calls):
-            continue  # it is noticed anyway
-        answers = [call.value for call in calls]
-        passed = fault(exercise, inputs, answers) is None
-        assert not passed or any(
-            agree_all(answers, answers_of(right, inputs), exercise.tolerance)
-            for right in (exercise.solution, *exercise.others)
-        )
-
-
 FORMS = {
     "lists": lambda values: values.tolist() if values.size else values,
     "tuples": lambda values: tuple(values.tolist()) if values.ndim and values.size else values,
@@ -74,22 +50,21 @@ FORMS = {
 }
 
 
-@pytest.mark.parametrize("form", FORMS)
 @every_exercise
-def test_the_right_values_pass_in_another_form(exercise, form):
+def test_the_right_values_pass_in_another_form(exercise):
     """So right_answers/ needs no variants of this kind. Exercises with `verify` have theirs there."""
     if exercise.verify is not None:
         pytest.skip("this exercise has many right answers")
     inputs = exercise.draw(np.random.default_rng(0))
-    answers = []
-    for right in answers_of(exercise.solution, inputs):
-        changed = [FORMS[form](np.asarray(part)) for part in parts(right)]
-        answers.append(changed if isinstance(right, tuple) else changed[0])
-    assert fault(exercise, inputs, answers) is None
+    wanted = answers_of(exercise.solution, inputs)
+    for name, form in FORMS.items():
+        changed = [[form(np.asarray(part)) for part in parts(right)] for right in wanted]
+        answers = [new if isinstance(right, tuple) else new[0] for new, right in zip(changed, wanted, strict=True)]
+        assert fault(exercise, inputs, answers) is None, name
 
 
 @pytest.mark.parametrize(("number", "answer"), RIGHT_ANSWERS, ids=lambda given: given if isinstance(given, str) else "")
 def test_another_way_to_the_right_values_passes(number, answer):
-    for seed in SEEDS[:2]:
-        verdict = judge(find_exercise(number), answer, seed)
-        assert verdict.status == "right", verdict.message
+    """One other way an exercise; more only where `verify` takes values of many kinds."""
+    verdict = judge(find_exercise(number), answer, seed=1)
+    assert verdict.status == "right", verdict.message

@@ -59,7 +59,7 @@ def test_a_room_corner_reads_its_closed_form(backend, camera, offset, rng):
 
 
 @pytest.mark.parametrize("drawn", ["raster", "vtk"])
-@pytest.mark.parametrize("n_triangles", [30, 400, 4000])
+@pytest.mark.parametrize("n_triangles", [30, 4000])
 @pytest.mark.parametrize("camera", [OFF_CENTRE, DepthCamera.sr4000(far=15.0)], ids=["odd", "sr4000"])
 def test_random_meshes_agree_with_ray_casting_away_from_silhouettes(drawn, n_triangles, camera, rng):
     scene, states = random_triangles(n_triangles, rng), random_states(12, rng)
@@ -101,7 +101,7 @@ def board(depth, state=STATE):
     return SceneMap(depth * BOARD @ pose[:3, :3].T + pose[:3, 3], np.array([[0, 1, 2], [0, 2, 3]]))
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(3))
 def test_near_and_far_mean_the_same_in_all_paths_up_to_rounding(backend, seed):
     """A surface on a plane, or within steps of float32 of it, is seen; one beyond it is not. Also by eq. (7)."""
     rng = np.random.default_rng(seed)
@@ -165,9 +165,9 @@ def test_depths_of_a_floor_of_kilometres_are_right_to_a_millimetre(backend, rng)
     assert np.quantile(error, 0.99 if backend == "vtk" else 0.999) < 0.001  # OpenGL divides in single precision
 
 
-@pytest.mark.parametrize("size", [(1, 1), (7, 5), (9, 17)])
-@pytest.mark.parametrize("n", [0, 1, 8, 33])
-@pytest.mark.parametrize("max_batch_pixels", [1, 64 * 48 * 7, 10**7])
+@pytest.mark.parametrize("size", [(1, 1), (9, 17)])
+@pytest.mark.parametrize("n", [0, 1, 33])
+@pytest.mark.parametrize("max_batch_pixels", [1, 64 * 48 * 7])
 def test_no_image_is_mixed_up_for_any_size_number_of_views_or_batch(backend, size, n, max_batch_pixels, rng):
     camera = OFF_CENTRE.resized(*size)
     states = random_states(n, rng, spread=2.5)

@@ -169,11 +169,7 @@ UPPER, LOWER, _ = views(POSE)
         (DetectionError, "joins a sofa to a chair", lambda: localize(UPPER, LOWER, [(0, 2)])),
         (DetectionError, "one detection twice", lambda: localize(UPPER, LOWER, [(0, 0), (0, 1)])),
         (DetectionError, "needs ObjectMatch with its features", lambda: localize(*views(POSE), distance="disparity")),
-        (
-            DetectionError,
-            "on a panorama of 640 x 320",
-            lambda: PLAIN.localize_detections(UPPER, [], [], (640, 320)),
-        ),
+        (DetectionError, "on a panorama of 640 x 320", lambda: PLAIN.localize_detections(UPPER, [], [], (640, 320))),
         (LocalizerError, "observation 0 is a person", lambda: given("person", 1.0, 2.0, 30, 50)),
         (AssociationError, "observation: x and y", lambda: given("chair", math.nan, 2.0, 30, 50)),
         (LocalizerError, "no detector", lambda: PLAIN.localize(IMAGE, IMAGE)),

@@ -53,9 +53,9 @@ class YoloDetector:
         """Check the three files against each other and load the network.
 
         input_size: (width, height) in pixels, multiples of 32, instead of the cfg's; (1280, 512) suits a panorama.
-        thresholds: score_threshold (0.5); iou_threshold (0.45, Darknet's) for suppression within a class;
-        use_seam_extension (True). Raises `DetectorError` for a file that is missing or does not fit, and a threshold
-        outside [0, 1]. Source: paper 2, section 2.2.
+        thresholds: score_threshold (0.5); iou_threshold (0.45, Darknet's) for suppression within a class. Raises
+        `DetectorError` for a file that is missing or does not fit, and a threshold outside [0, 1].
+        Source: paper 2, section 2.2.
         """
         class_names = read_names(names)
         network = DarknetNetwork(cfg, weights, input_size)
@@ -97,15 +97,12 @@ class YoloDetector:
             options["score_threshold"] = threshold
         return cls(*paths, **options)
 
-    def _set_up(
-        self, network, class_names, score_threshold: float = 0.5, iou_threshold: float = 0.45, use_seam_extension=True
-    ) -> None:
+    def _set_up(self, network, class_names, score_threshold: float = 0.5, iou_threshold: float = 0.45) -> None:
         for name, value in (("score_threshold", score_threshold), ("iou_threshold", iou_threshold)):
             if not 0 <= value <= 1:
                 raise DetectorError(f"{name} must be between 0 and 1; got {value}")
         self.labels = sorted({canonical_label(name) for name in class_names})
         self.score_threshold, self.iou_threshold = float(score_threshold), float(iou_threshold)
-        self.use_seam_extension = use_seam_extension
         self._network = network
         self._label_of_class = np.array([self.labels.index(canonical_label(name)) for name in class_names])
 
@@ -121,11 +118,8 @@ class YoloDetector:
         Raises `PanoramaError` as `open_view` does. Source: paper 2, section 2.2.
         """
         view = open_view(image_bgr)
-        if self.use_seam_extension:
-            found = self.detect_in_plane(seam.extend_seam(view.image))
-            boxes, scores, classes = seam.select_on_circle(*found, view.width, self.iou_threshold)
-        else:
-            boxes, scores, classes = self.detect_in_plane(view.image)
+        found = self.detect_in_plane(seam.extend_seam(view.image))
+        boxes, scores, classes = seam.select_on_circle(*found, view.width, self.iou_threshold)
         rows = zip(classes, scores.tolist(), boxes.tolist(), strict=True)
         found = [Detection(self.labels[index], min(score, 1.0), tuple(box)) for index, score, box in rows]
         return list(coloured(view.replace(detections=found)).detections)

@@ -23,8 +23,7 @@ def pixels(png: bytes) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("change", "words"),
-    [({"title": ""}, "no title"), ({"xlabel": "x"}, "no unit"), ({"ylabel": ""}, "no unit")],
+    ("change", "words"), [({"title": ""}, "no title"), ({"xlabel": "x"}, "no unit"), ({"ylabel": ""}, "no unit")]
 )
 def test_a_figure_without_title_or_units_is_refused(change, words):
     figure, axes = finished_figure()

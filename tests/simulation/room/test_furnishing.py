@@ -1,6 +1,5 @@
 """Rooms: what a seed decides, how furniture stands, what looks alike, and where a rig stands and walks in them."""
 
-import hashlib
 import itertools
 
 import numpy as np
@@ -31,23 +30,6 @@ def experiment():
     return make_experiment_room()
 
 
-def bytes_of(room) -> str:
-    digest = hashlib.sha256()
-    for mesh in [*room.shell, *(mesh for item in room.objects for mesh in item.meshes)]:
-        for array in (mesh.vertices, mesh.faces, mesh.texture_coordinates, mesh.texture):
-            digest.update(np.ascontiguousarray(array).tobytes())
-    digest.update(repr((room.lamps, room.ambient, room.height)).encode())
-    return digest.hexdigest()
-
-
-@pytest.mark.slow
-def test_the_same_seed_makes_the_same_bytes(rooms, training_rooms, experiment):
-    assert bytes_of(make_room(3)) == bytes_of(training_rooms[0]) != bytes_of(training_rooms[1])
-    assert bytes_of(make_experiment_room()) == bytes_of(experiment)
-    assert bytes_of(make_look_alike_room(SEEDS[0])) == bytes_of(rooms[0]) != bytes_of(rooms[1])
-    assert bytes_of(make_look_alike_room(SEEDS[0], draw=1)) != bytes_of(rooms[0])
-
-
 def test_pieces_neither_overlap_nor_leave_the_room_and_some_look_alike(rooms, training_rooms, experiment):
     for room in rooms:
         pieces = [thing for thing in room.objects if thing.label == room.objects[0].label]
@@ -58,6 +40,7 @@ def test_pieces_neither_overlap_nor_leave_the_room_and_some_look_alike(rooms, tr
                 np.testing.assert_array_equal(first.texture, second.texture)
                 np.testing.assert_array_equal(first.texture_coordinates, second.texture_coordinates)
                 np.testing.assert_allclose(np.ptp(first.vertices[:, 2]), np.ptp(second.vertices[:, 2]))
+    assert not np.array_equal(rooms[0].walls, rooms[1].walls), "each seed has its own room"
     ours = (np.ptp(rooms[0].walls, axis=0) - 5.0) / 2.0
     for source in (SEEDS[0], np.random.default_rng(SEEDS[0]).spawn(1)[0]):
         assert not np.allclose((np.ptp(make_room(source).walls, axis=0) - 4.5) / 3.0, ours)

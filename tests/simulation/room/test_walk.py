@@ -42,13 +42,12 @@ def test_all_six_degrees_of_freedom_move_none_jumps_and_it_keeps_clear_of_walls_
 
 
 @pytest.mark.slow
-def test_a_recordings_seed_decides_every_byte_and_where_nobody_can_walk_it_says_so(tmp_path):
+def test_one_seed_decides_every_byte_of_a_recording_and_where_nobody_can_walk_it_says_so(tmp_path):
     coarse = DepthSurveyModel(
         scanner=ScannerModel(step_deg=1.5), fusion=FusionModel(voxel=0.08, truncation=0.24, triangles=4000)
     )
-    for name, seed in (("one", SEEDS[0]), ("two", SEEDS[0]), ("other", SEEDS[1])):
-        record_walk(tmp_path / name, seed, coarse, WalkModel(frames=3))
-    assert (tmp_path / "one" / "map.ply").read_bytes() != (tmp_path / "other" / "map.ply").read_bytes()
+    for name in ("one", "two"):
+        record_walk(tmp_path / name, SEEDS[0], coarse, WalkModel(frames=3))
     files = sorted(path.relative_to(tmp_path / "one") for path in (tmp_path / "one").rglob("*") if path.is_file())
     assert {"map.ply", "poses.txt", "intrinsics.txt", "up.txt"} <= {path.name for path in files}
     for path in files:

@@ -74,10 +74,7 @@ def test_a_detection_has_its_canonical_label_and_its_place_on_the_circle_with_a_
         ("score", [float("nan"), 1.1, -0.1]),
         ("hue", [360.0, -1.0]),
         ("saturation", [101.0, -1.0]),
-        (
-            "box",
-            [(1, 2, 3), (3, 2, 1, 4), (-1, 2, 3, 4), (1, 2, 3, np.inf), (1, -2, 3, 4), (1, 4, 3, 2)],
-        ),
+        ("box", [(1, 2, 3), (3, 2, 1, 4), (-1, 2, 3, 4), (1, 2, 3, np.inf), (1, -2, 3, 4), (1, 4, 3, 2)]),
     ],
 )
 def test_a_detection_that_cannot_be_is_refused(field, bad):
