@@ -41,4 +41,9 @@ def by_integrals(variance, innovation, r):
     return mean(1) ** 2 / mean(2)
 
 
-RIGHT = [("F1.1", by_logarithms), ("F1.2", tooth_by_tooth), ("F1.3", by_integrals)]
+RIGHT = [
+    ("F1.1", by_logarithms),
+    ("F1.1", lambda w, p: [w * p / (w @ p), (w @ p) ** 2 / ((w * w) @ (p * p))]),
+    ("F1.2", tooth_by_tooth),
+    ("F1.3", by_integrals),
+]

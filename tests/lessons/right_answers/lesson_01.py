@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from course_lib.geometry import BODY_FROM_OPTICAL as B
-from course_lib.geometry import pose_matrix
+from course_lib.geometry import optical_pose, pose_matrix, state_from_matrix
 
 
 def rotation(state):
@@ -18,23 +18,28 @@ def angles_of(R):
     return [math.atan2(R[2, 1], R[2, 2]), -math.asin(R[2, 0]), math.atan2(R[1, 0], R[0, 0])]
 
 
-def tried_one_by_one(angles, rotations, new):
+def tried_one_by_one(angles, rotations, new, firsts=(True, False), signs=(1, -1)):
     """Every reading by matrices of our own, the first that fits."""
 
     def matrix(row, axes, sign, first):
         turns = [rotation(np.deg2rad(s * a) * np.eye(6)[3 + k]) for k, s, a in zip(axes, sign, row, strict=True)]
         return np.linalg.multi_dot(turns[::-1] if first else turns)
 
-    signs = itertools.product((1, -1), repeat=3)
-    for reading in itertools.product(itertools.permutations(range(3)), signs, (True, False)):
+    for reading in itertools.product(itertools.permutations(range(3)), itertools.product(signs, repeat=3), firsts):
         if np.allclose([matrix(row, *reading) for row in angles], rotations, atol=1e-6):
             return np.array([angles_of(matrix(row, *reading)) for row in new])
     return None
 
 
 RIGHT = [
+    ("01.1", lambda p, s: (optical_pose(s) @ np.column_stack([p, np.ones(len(p))]).T)[:3].T),
     ("01.1", lambda p, s: [list(rotation(s) @ B @ q + s[:3]) for q in p]),
+    ("01.1", lambda p, s: [(pose_matrix(s) @ [q[2], -q[0], -q[1], 1.0])[:3] for q in p]),
+    ("01.1", lambda p, s: np.float32(p @ (rotation(s) @ B).T + s[:3])),
+    ("01.2", lambda m: [*m[:3, 3], *angles_of(m[:3, :3] @ B.T)]),
     ("01.2", lambda m: np.r_[m[:3, 3], Rotation.from_matrix(m[:3, :3] @ B.T).as_euler("ZYX")[::-1]]),
+    ("01.3", lambda a, b: state_from_matrix(np.linalg.solve(pose_matrix(a), pose_matrix(b)))),
     ("01.3", lambda a, b: [*((b - a)[:3] @ rotation(a)), *angles_of(rotation(a).T @ rotation(b))]),
     ("01.4", tried_one_by_one),
+    ("01.4", lambda a, R, new: tried_one_by_one(a, R, new, firsts=(False, True), signs=(-1, 1)).tolist()),
 ]

@@ -1,20 +1,37 @@
 """Right answers to lesson 04 by other ways than its solutions."""
 
+from functools import partial
+
 import numpy as np
+from scipy.integrate import trapezoid
+from scipy.stats import norm
 
 LIGHT = 299_792_458.0  # m/s
 
 
-def by_candidates(a, f_a, b, f_b, farthest):
-    """Of all ranges that are read as `a`, the one whose reading at f_b is nearest to `b` on the circle."""
-    candidates, turn = [np.arange(one, farthest, LIGHT / (2 * f_a)) for one in a], LIGHT / (2 * f_b)
-    return [c[np.cos(2 * np.pi * (c - other) / turn).argmax()] for c, other in zip(candidates, b, strict=True)]
+def by_candidates(miss, a, f_a, b, f_b, farthest):
+    """Of all ranges that are read as `a`, the one with the least `miss(candidates, reading at b, turn at b)`."""
+    candidates = [np.arange(one, farthest, LIGHT / (2 * f_a)) for one in a]
+    return [c[miss(c, other, LIGHT / (2 * f_b)).argmin()] for c, other in zip(candidates, b, strict=True)]
 
 
-def by_phasors(r, r1, p1, r2, p2, f):
-    """Turn both phasors so that the reading r is along the real axis: their sum is real."""
-    near, far = ((p / d**2 * np.exp(4j * np.pi * f * (d - r) / LIGHT)).imag for d, p in ((r1, p1), (r2, p2)))
-    return far / (far - near)
+def share_by(solve, r, r1, p1, r2, p2, f):
+    """Both phasors, turned so that the reading r is along the real axis: `solve` makes their sum real."""
+    return solve(*((p / d**2 * np.exp(4j * np.pi * f * (d - r) / LIGHT)).imag for d, p in ((r1, p1), (r2, p2))))
+
+
+def halving(near, far):
+    share = np.full(len(near), 0.5)
+    for k in range(2, 60):
+        share += np.sign(share * near + (1 - share) * far) / 2.0**k
+    return share
+
+
+def least_by_parts(n):
+    """From P(least > x) = sf(x)^n alone."""
+    x = np.linspace(-8, 8, 8001)
+    mean, square = x[0] + trapezoid(norm.sf(x) ** n, x), x[0] ** 2 + 2 * trapezoid(x * norm.sf(x) ** n, x)
+    return mean, np.sqrt(square - mean**2)
 
 
 def least_by_drawing(n):
@@ -24,7 +41,15 @@ def least_by_drawing(n):
 
 RIGHT = [
     ("04.1", lambda r, rays: r * np.cos(np.arctan(np.hypot(rays[..., 0], rays[..., 1])))),
-    ("04.2", by_candidates),
-    ("04.3", by_phasors),
+    ("04.1", lambda r, rays: r / (rays**2).sum(-1) ** 0.5),
+    (
+        "04.1",
+        lambda r, rays: [[r[v, u] / np.linalg.norm(rays[v, u]) for u in range(r.shape[1])] for v in range(len(r))],
+    ),
+    ("04.2", partial(by_candidates, lambda c, b, turn: 1 - np.cos(2 * np.pi * (c - b) / turn))),
+    ("04.2", partial(by_candidates, lambda c, b, turn: np.minimum((c - b) % turn, (b - c) % turn))),
+    ("04.3", partial(share_by, halving)),
+    ("04.3", partial(share_by, lambda near, far: far / (far - near))),
+    ("04.4", least_by_parts),
     ("04.4", least_by_drawing),
 ]

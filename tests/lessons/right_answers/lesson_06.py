@@ -1,5 +1,7 @@
 """Right answers to the exercises of lesson 06 by other ways than the solution's."""
 
+from functools import partial
+
 import numpy as np
 
 
@@ -7,14 +9,19 @@ def term(difference, alpha):
     return alpha / (alpha + difference)
 
 
-def weigh_by_means(measured, images, alpha, beta):
-    """By means over the measured pixels: (9) takes their number away again."""
-    valid = np.isfinite(measured)
-    means = term(np.abs(measured - images), alpha)[:, valid].mean(axis=1) if valid.any() else np.zeros(len(images))
-    if not np.ptp(means) > 0:
-        return [1 / len(means)] * len(means)
-    w = np.exp(-((((means - means.min()) / np.ptp(means) - 1) / beta) ** 2))
+def weigh_by(likelihoods, measured, images, alpha, beta):
+    """Weights of the likelihoods that `likelihoods(terms, measured pixels)` makes of all pixels' terms."""
+    sums = likelihoods(term(np.abs(measured - images), alpha), np.isfinite(measured))
+    if not np.ptp(sums) > 0:
+        return [1 / len(sums)] * len(sums)
+    w = np.exp(-((((sums - sums.min()) / np.ptp(sums) - 1) / beta) ** 2))
     return w / np.sum(w)
+
+
+def numbers_for_nan(measured, images, alpha, beta):
+    """Both images agree where nothing was measured: the same for all, so (9) takes it away again."""
+    both = [np.where(np.isnan(measured), 1, depth) for depth in (measured, images)]
+    return weigh_by(lambda terms, valid: terms.sum(axis=(1, 2)), *both, alpha, beta)
 
 
 def averaged(x, target, proposal):
@@ -23,8 +30,16 @@ def averaged(x, target, proposal):
 
 
 RIGHT = [
+    ("06.1", lambda hidden, a: [np.average(term(np.array([0.02, 2]), a), weights=[1 - h, h]) for h in hidden]),
     ("06.1", lambda hidden, a: term(0.02, a) - hidden * (term(0.02, a) - term(2, a))),
-    ("06.2", weigh_by_means),
+    ("06.1", lambda hidden, a: [float(1 - 0.02 / (a + 0.02) * (1 - h) - 2 / (a + 2) * h) for h in hidden]),
+    ("06.2", partial(weigh_by, lambda terms, valid: np.nansum(terms, axis=(1, 2)))),
+    ("06.2", partial(weigh_by, lambda t, valid: np.nanmean(t, axis=(1, 2)) if valid.any() else np.zeros(len(t)))),
+    ("06.2", partial(weigh_by, lambda t, valid: np.array([sum(a[v, u] for v, u in np.argwhere(valid)) for a in t]))),
+    ("06.2", numbers_for_nan),
     ("06.3", lambda v, beta: v.min() + (1 - beta * np.log(2) ** 0.5) * np.ptp(v)),
+    ("06.3", lambda v, beta: [v.max() - np.ptp(v) * np.sqrt(-(beta**2) * np.log(0.5))]),
+    ("06.3", lambda v, beta: np.float32([v.max() - beta * np.log(2) ** 0.5 * np.ptp(v)])),
     ("06.4", averaged),
+    ("06.4", lambda x, p, q: np.array(averaged(x, 7 * p, q))),
 ]

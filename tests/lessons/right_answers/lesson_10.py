@@ -11,6 +11,17 @@ from course_lib.lessons.lesson_10.adaptive_count import kld_count
 ENOUGH = 10**6
 
 
+def by_running_sum(free, cell, u):
+    chosen = np.searchsorted(np.cumsum(free.ravel()), u[:, 0] * free.sum(), side="right")
+    return np.transpose([cell * (chosen % free.shape[1] + u[:, 1]), cell * (chosen // free.shape[1] + u[:, 2])])
+
+
+def by_loops(free, cell, u):
+    listed = [(r, c) for r in range(free.shape[0]) for c in range(free.shape[1]) if free[r, c]]
+    chosen = [listed[int(a * len(listed))] for a in u[:, 0]]
+    return [[cell * (c + x), cell * (r + y)] for (r, c), (_, x, y) in zip(chosen, u, strict=True)]
+
+
 def means(scores, share):
     return np.array(list(accumulate(scores, lambda m, s: m if np.isnan(s) else share * s + (1 - share) * m)))
 
@@ -18,6 +29,14 @@ def means(scores, share):
 def by_slices(bins, least):
     ends = range(1, len(bins) + 1)
     return next((n for n in ends if n >= kld_count(len(set(bins[:n].tolist())), least, ENOUGH)), len(bins))
+
+
+def by_while(bins, least):
+    n, seen = 0, {}
+    while n < len(bins) and n < kld_count(len(seen), least, ENOUGH):
+        seen[int(bins[n])] = True
+        n += 1
+    return np.array([n])[0]
 
 
 def near(a, b, metres, radians):
@@ -33,6 +52,14 @@ def by_lists(states, scores, *limits):
     return kept
 
 
+def by_striking_out(states, scores, *limits):
+    left, kept = set(range(len(scores))), []
+    while left:
+        kept.append(best := max(left, key=lambda i: scores[i]))
+        left -= {i for i in left if i == best or near(states[i], states[best], *limits)}
+    return np.array(kept, dtype=np.int32)
+
+
 def by_counting(bins, miss, probability):
     """Draw by draw; then the error by bisection of (10.3)."""
     least, empty, share = 0, 1.0, 2 / (9 * (bins - 1))
@@ -42,10 +69,18 @@ def by_counting(bins, miss, probability):
     return least, brentq(lambda error: wanted / error - least, 1e-9, 1e3, xtol=1e-12)
 
 
-RIGHT = [
-    ("10.1", lambda f, c, u: (np.argwhere(f)[np.floor(u[:, 0] * f.sum()).astype(int), ::-1] + u[:, 1:]) * c),
-    ("10.2", lambda s, a, b: np.clip(1 - means(s, a) / means(s, b), 0, None)),
-    ("10.3", by_slices),
-    ("10.4", by_lists),
-    ("10.5", by_counting),
-]
+ANSWERS = {
+    "10.1": [
+        by_running_sum,
+        by_loops,
+        lambda f, c, u: np.float32((np.argwhere(f)[np.floor(u[:, 0] * f.sum()).astype(int), ::-1] + u[:, 1:]) * c),
+    ],
+    "10.2": [
+        lambda s, a, b: [float(max(0, (u - v) / u)) for v, u in zip(means(s, a), means(s, b), strict=True)],
+        lambda s, a, b: np.clip(1 - means(s, a) / means(s, b), 0, None),
+    ],
+    "10.3": [by_slices, by_while],
+    "10.4": [by_lists, by_striking_out, lambda *given: np.array(by_lists(*given))],
+    "10.5": [by_counting],
+}
+RIGHT = [(number, answer) for number, answers in ANSWERS.items() for answer in answers]

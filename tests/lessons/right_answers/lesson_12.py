@@ -12,6 +12,11 @@ def iou(across, a, b):
     return shared / (sum((box[2] - box[0]) * (box[3] - box[1]) for box in (a, b)) - shared)
 
 
+def nearest_copy(a, b, width):
+    gap = (b[0] + b[2] - a[0] - a[2]) / 2
+    return iou(across(a, b, (gap + width / 2) % width - width / 2 - gap), a, b)
+
+
 def suppressed(boxes, scores, threshold, limit):
     """The surest stays, all that overlap it go, and again with what is left."""
     best, classes, kept = scores.max(axis=1), scores.argmax(axis=1), []
@@ -22,6 +27,12 @@ def suppressed(boxes, scores, threshold, limit):
         gone = [i for i in same if iou(across(boxes[i], boxes[k]), boxes[i], boxes[k]) > limit]
         left = [i for i in left if i not in gone]
     return kept
+
+
+def class_after_class(boxes, scores, threshold, limit):
+    rows = [np.flatnonzero(scores.argmax(axis=1) == one) for one in range(scores.shape[1])]
+    kept = [row[i] for row in rows for i in suppressed(boxes[row], scores[row], threshold, limit)]
+    return np.array(sorted(kept, key=lambda i: -scores[i].max()), dtype=int)
 
 
 def lowest(scores, right, least, z=1.96):
@@ -41,8 +52,11 @@ def just_below(scores, right, least):
 
 RIGHT = [
     ("12.1", lambda boxes, w, s: [s <= (box[0] + box[2]) / 2 < s + w for box in boxes]),
+    ("12.1", lambda boxes, w, s: ((boxes[:, [0, 2]].mean(axis=1) - s) // w == 0).astype(int)),
+    ("12.2", nearest_copy),
     ("12.2", lambda a, b, w: [iou(sum(across(a, b, turn) for turn in (-w, 0, w)), a, b)]),
     ("12.3", suppressed),
+    ("12.3", class_after_class),
     ("12.4", lowest),
     ("12.4", just_below),
     ("12.4", lambda *given: lowest(*given, 1.959964)),

@@ -7,6 +7,15 @@ from course_lib.geometry import wrap_angle
 PI = np.pi
 
 
+def by_angles(upper, lower, baseline):
+    """Turn the whole scene until the baseline is upright, and use equation (13.2)."""
+    ahead = np.cross(np.eye(3)[np.argmin(np.abs(baseline))], baseline)
+    ahead /= np.linalg.norm(ahead)
+    (x, y, _), (x_l, y_l, z_l) = (np.stack([ahead, np.cross(baseline, ahead), baseline]) @ d.T for d in (upper, lower))
+    gap = np.abs(wrap_angle(np.arctan2(y_l, x_l) - np.arctan2(y, x)))
+    return np.where(gap > PI / 2, np.arccos(np.abs(z_l)), np.arcsin(np.sqrt(1 - z_l**2) * np.sin(gap)))
+
+
 def nearest_point(upper, lower, baseline):
     """The point of each half-circle that is nearest, and the chord to it."""
     ahead = upper - np.outer(upper @ baseline, baseline)
@@ -54,8 +63,11 @@ def by_median(upper, lower):
 
 RIGHT = [
     ("13.1", lambda v, rho, b, h: np.arctan2(rho, rho / np.tan(v / h * PI) + b) / PI * h),
+    ("13.1", lambda v, rho, b, h: [h / 2 - h / PI * np.arctan(np.tan((h / 2 - r) * PI / h) + b / rho) for r in v]),
+    ("13.2", by_angles),
     ("13.2", nearest_point),
     ("13.3", count_by_count),
+    ("13.3", lambda counts: np.array(count_by_count(counts), float)),
     ("13.4", by_histogram),
     ("13.4", by_median),
 ]

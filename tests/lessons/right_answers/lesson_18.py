@@ -9,6 +9,11 @@ from scipy.stats import multivariate_normal
 from course_lib.spherical_stereo import fit_rigid_2d
 
 
+def colour(a, s, b, t):
+    hue = (np.abs((a - b + 180) % 360 - 180) / np.maximum(600 / np.minimum(s, t), 12.0)) ** 2 / 2
+    return np.minimum(np.where(np.isnan(hue), 0, hue) + (s - t) ** 2 / 450, 3.0)
+
+
 def colour_by_loop(*given):
     costs = []
     for a, s, b, t in zip(*given, strict=True):
@@ -19,15 +24,42 @@ def colour_by_loop(*given):
     return costs
 
 
+def complex_pose(seen, landmarks):
+    """The turn is a quotient of length 1."""
+    z, m = seen @ [1, 1j], landmarks @ [1, 1j]
+    turn = (m[1] - m[0]) / (z[1] - z[0])
+    t = m.mean() - turn / abs(turn) * z.mean()
+    return t.real, t.imag, np.angle(turn)
+
+
 def padded(cost):
     """A column of its own for every row, in which it stays unmatched at no cost."""
     i, j = linear_sum_assignment(np.hstack([cost, np.where(np.eye(len(cost)) > 0, 0.0, 1e6)]))
     return np.where(j < cost.shape[1], j, -1)[np.argsort(i)]
 
 
+def by_sorting(confidence, right, max_wrong):
+    """Down the sorted list, looked at only where the next confidence is another one."""
+    order = sorted(range(len(confidence)), key=lambda k: -confidence[k])
+    best, wrong = 0.0, 0
+    for n, k in enumerate(order, start=1):
+        wrong += not right[k]
+        is_last = n == len(order) or confidence[order[n]] != confidence[k]
+        if is_last and confidence[k] > 0 and wrong <= max_wrong * n:
+            best = n / len(order)
+    return best
+
+
 def every_threshold(confidence, right, max_wrong):
     given = [confidence >= threshold for threshold in confidence if threshold > 0]
     return np.float32(max((one.mean() for one in given if 1 - right[one].mean() <= max_wrong), default=0))
+
+
+def by_the_cost(S, p, clutter, e, g):
+    """(18.2) as it stands, its sign changed."""
+    size = np.linalg.slogdet(S)[1] / 2 + S.shape[1] * np.log(2 * np.pi) / 2 + np.log(clutter)
+    cost = size[:, None] - np.log(e / g[:, None]) - np.log(p / (1 - p))
+    return [[math.sqrt(-2 * one) if one < 0 else 0.0 for one in row] for row in cost]
 
 
 def by_densities(S, p, clutter, e, g):
@@ -37,9 +69,12 @@ def by_densities(S, p, clutter, e, g):
 
 
 RIGHT = [
-    ("18.1", colour_by_loop),
-    ("18.2", fit_rigid_2d),
-    ("18.3", padded),
-    ("18.4", every_threshold),
-    ("18.5", by_densities),
+    *[("18.1", way) for way in (colour, colour_by_loop)],
+    ("18.1", lambda *given: colour(*(np.float32(one) for one in given))),
+    *[("18.2", way) for way in (complex_pose, fit_rigid_2d)],
+    ("18.2", lambda s, m: np.array(complex_pose(s, m))),
+    ("18.2", lambda s, m: list(complex_pose(s.astype(np.float32), m.astype(np.float32)))),
+    *[("18.3", way) for way in (padded, lambda cost: padded(cost).astype(np.float32))],
+    *[("18.4", way) for way in (by_sorting, every_threshold)],
+    *[("18.5", way) for way in (by_the_cost, by_densities)],
 ]

@@ -5,6 +5,14 @@ import math
 import numpy as np
 
 
+def by_rotation_matrices(particles, sigma, noise):
+    moved = particles + sigma * noise
+    for row, particle, step in zip(moved, particles, sigma * noise, strict=True):
+        c, s = math.cos(particle[5]), math.sin(particle[5])
+        row[:2] = particle[:2] + np.array([[c, -s], [s, c]]) @ step[:2]
+    return moved.tolist()
+
+
 def by_complex_numbers(particles, sigma, noise):
     step = sigma * noise
     xy = particles[:, 0] + 1j * particles[:, 1] + (step[:, 0] + 1j * step[:, 1]) * np.exp(1j * particles[:, 5])
@@ -14,6 +22,12 @@ def by_complex_numbers(particles, sigma, noise):
 def with_wrapped_yaw(*given):
     moved = by_complex_numbers(*given)
     return np.column_stack([moved[:, :5], np.mod(moved[:, 5] + np.pi, 2 * np.pi) - np.pi])
+
+
+def by_loops(measured, simulated, alpha):
+    pixels = [k for k, z in enumerate(measured.flat) if not math.isnan(z)]
+    apart = [[abs(measured.flat[k] - image.flat[k]) for k in pixels] for image in simulated]
+    return [sum(0.0 if math.isinf(d) else 1 - d / (alpha + d) for d in row) for row in apart]
 
 
 def by_nansum(measured, simulated, alpha):
@@ -31,24 +45,43 @@ def by_arrows(particles, w):
     return [*np.average(particles[:, :3], axis=0, weights=w), *np.angle(arrows)]
 
 
+def walking_along(w, u):
+    """A pointer that only moves on."""
+    found, i, reached = [], 0, 0.0
+    for k in range(len(w)):
+        while reached + w[i] <= (k + u) / len(w) and i < np.flatnonzero(w)[-1]:
+            reached, i = reached + w[i], i + 1
+        found.append(i)
+    return found
+
+
+def by_counting(w, u):
+    ends = np.cumsum(w)
+    ends[np.flatnonzero(w)[-1] :] = 1.0
+    upto = np.ceil(len(w) * ends - u).astype(int).clip(0, len(w))
+    return np.repeat(np.arange(len(w)), np.diff(upto, prepend=0))
+
+
 def without_the_weightless(w, u):
     heavy = np.flatnonzero(w)
     return heavy[np.searchsorted(np.cumsum(w[heavy]) / w.sum(), (np.arange(len(w)) + u) / len(w))]
 
 
 def one_round(particles, measured, render, sigma, beta, noise, u):
-    moved = by_complex_numbers(particles, sigma, noise)
+    moved = np.array(by_rotation_matrices(particles, sigma, noise))
     w = np.array(weights_by_loops(by_nansum(measured, render(moved), 0.1), beta))
-    return by_arrows(moved, w), moved[without_the_weightless(w, u)]
+    return by_arrows(moved, w), moved[walking_along(w, u)]
 
 
+# fmt: off
 RIGHT = [
+    ("P1.1", lambda state0, n: [list(state0) for _ in range(n)]),
     ("P1.1", lambda state0, n: np.repeat(state0[None], n, axis=0)),
-    ("P1.2", by_complex_numbers),
-    ("P1.2", with_wrapped_yaw),
-    ("P1.3", by_nansum),
-    ("P1.4", weights_by_loops),
-    ("P1.5", by_arrows),
-    ("P1.6", without_the_weightless),
-    ("P1.7", one_round),
+    ("P1.1", lambda state0, n: np.ones((n, 1)) * state0),
+    ("P1.2", by_rotation_matrices), ("P1.2", by_complex_numbers), ("P1.2", with_wrapped_yaw),
+    ("P1.3", by_loops), ("P1.3", by_nansum), ("P1.3", lambda *given: by_nansum(*given).astype(np.float32)),
+    ("P1.4", weights_by_loops), ("P1.4", lambda *given: np.array(weights_by_loops(*given), np.float32)),
+    ("P1.5", by_arrows), ("P1.5", lambda *given: np.array(by_arrows(*given), np.float32)),
+    ("P1.6", walking_along), ("P1.6", by_counting), ("P1.6", without_the_weightless),
+    ("P1.7", one_round), ("P1.7", lambda *given: list(one_round(*given))),
 ]

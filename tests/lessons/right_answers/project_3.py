@@ -1,15 +1,25 @@
 """Right answers to project 3 by other ways than its solutions."""
 
 import cmath
+import itertools
 import math
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment, minimize
 
 from course_lib.geometry import wrap_angle
+from course_lib.spherical_stereo import fit_rigid_2d
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d as turn
 
 PI = math.pi
+
+
+def distances_by_loops(pose, places, covariances, landmarks):
+    r, table = turn(pose[2]), np.empty((len(places), len(landmarks)))
+    for i, j in np.ndindex(table.shape):
+        off = r @ places[i] + pose[:2] - landmarks[j]
+        table[i, j] = off @ np.linalg.solve(r @ covariances[i] @ r.T + np.diag([0.0004, 0.0004]), off)
+    return table
 
 
 def distances_in_the_body_frame(pose, places, covariances, landmarks):
@@ -33,12 +43,39 @@ def poses_by_loops(places, labels, landmarks, map_labels, tolerance):
     return found
 
 
+def poses_from_the_fit(places, labels, landmarks, map_labels, tolerance):
+    """Two pairs and the least-squares fit of lesson 16: middle on middle by itself."""
+    matches, found = [ij for ij in np.ndindex(len(places), len(landmarks)) if labels[ij[0]] == map_labels[ij[1]]], []
+    for (i, j), (k, m) in itertools.combinations(matches, 2):
+        lengths = math.dist(places[i], places[k]), math.dist(landmarks[j], landmarks[m])
+        if i != k and j != m and abs(lengths[0] - lengths[1]) <= tolerance and min(lengths) >= 0.5:
+            found.append(fit_rigid_2d(places[[i, k]], landmarks[[j, m]]))
+    return np.array(found).reshape(-1, 3)
+
+
 def assigned_with_dummies(squared, like, reward):
     """A dummy landmark for every observation, which costs nothing."""
     n, m = squared.shape
     cost = np.hstack([np.where(like, squared / 2 - reward, 1e6), np.zeros((n, n))])
     columns = linear_sum_assignment(cost)[1]
     return [int(j) if j < m else -1 for j in columns], -cost[np.arange(n), columns].sum()
+
+
+def assigned_by_trying(squared, like, reward):
+    """All ways, one observation after the other: slow, and right."""
+
+    def best(i, taken):
+        if i == len(squared):
+            return [], 0.0
+        ways = [([-1, *(rest := best(i + 1, taken))[0]], rest[1])]
+        for j, gain in enumerate(reward - squared[i] / 2):
+            if like[i, j] and j not in taken and gain > 0:
+                rest = best(i + 1, taken | {j})
+                ways.append(([j, *rest[0]], rest[1] + gain))
+        return max(ways, key=lambda way: way[1])
+
+    landmark, score = best(0, frozenset())
+    return np.array(landmark), score
 
 
 def refit_by_nelder_and_mead(start, places, covariances, targets):
@@ -53,6 +90,30 @@ def refit_by_nelder_and_mead(start, places, covariances, targets):
     return [x, y, wrap_angle(theta)]
 
 
+def refit_by_gauss_and_newton(start, places, covariances, targets):
+    """Steps in the body frame, where the weights stand still; the derivative by hand."""
+    pose, weights = np.array(start), np.linalg.inv(covariances)
+    for _ in range(40):
+        back = (targets - pose[:2]) @ turn(pose[2])
+        slope = np.zeros((len(places), 2, 3))
+        slope[:, :, :2], slope[:, 0, 2], slope[:, 1, 2] = turn(-pose[2]), -back[:, 1], back[:, 0]
+        normal = np.einsum("nki,nkl,nlj->ij", slope, weights, slope)
+        pose = pose - np.linalg.solve(normal, np.einsum("nki,nkl,nl->i", slope, weights, places - back))
+    return np.array([pose[0], pose[1], wrap_angle(pose[2])], dtype=np.float32)
+
+
+def sure_by_loop(poses, scores, nothing):
+    if len(scores) == 0:
+        return 0
+    best, second = max(range(len(scores)), key=lambda k: scores[k]), -math.inf
+    for pose, score in zip(poses, scores, strict=True):
+        turned = abs(cmath.phase(cmath.exp(1j * (pose[2] - poses[best][2]))))
+        if math.dist(pose[:2], poses[best][:2]) > 0.5 or turned > math.radians(10):
+            second = max(second, score)
+    with np.errstate(over="ignore"):
+        return 1 / (1 + np.exp((second - scores[best]) / 2) + np.exp((nothing - scores[best]) / 2))
+
+
 def sure_by_softmax(poses, scores, nothing):
     if not len(poses):
         return np.zeros(1)
@@ -64,10 +125,11 @@ def sure_by_softmax(poses, scores, nothing):
     return np.array([share[0] / share.sum()])
 
 
+# fmt: off
 RIGHT = [
-    ("P3.1", distances_in_the_body_frame),
-    ("P3.2", poses_by_loops),
-    ("P3.3", assigned_with_dummies),
-    ("P3.4", refit_by_nelder_and_mead),
-    ("P3.5", sure_by_softmax),
+    ("P3.1", distances_by_loops), ("P3.1", distances_in_the_body_frame),
+    ("P3.2", poses_by_loops), ("P3.2", poses_from_the_fit),
+    ("P3.3", assigned_with_dummies), ("P3.3", assigned_by_trying),
+    ("P3.4", refit_by_nelder_and_mead), ("P3.4", refit_by_gauss_and_newton),
+    ("P3.5", sure_by_loop), ("P3.5", sure_by_softmax),
 ]
