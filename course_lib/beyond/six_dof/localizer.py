@@ -55,7 +55,17 @@ from course_lib.beyond.six_dof.prediction import (
     MotionPrediction,
     Rival,
 )
-from course_lib.beyond.six_dof.schedule import COARSE, LAYERS, MIDDLE, SECOND_LOOK, STEPS, SURE_LAYERS, Layer, Step, pyramid
+from course_lib.beyond.six_dof.schedule import (
+    COARSE,
+    LAYERS,
+    MIDDLE,
+    SECOND_LOOK,
+    STEPS,
+    SURE_LAYERS,
+    Layer,
+    Step,
+    pyramid,
+)
 from course_lib.depth_mcl.likelihood import checked_image, valid_pixels
 from course_lib.depth_mcl.localizer import NoMeasurementWarning, checked_start
 from course_lib.depth_mcl.motion import TANGENT_SPACE
