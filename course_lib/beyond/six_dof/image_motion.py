@@ -53,7 +53,7 @@ class View(NamedTuple):
         """Return the view of every k-th row and column of a depth image `(H, W)`, so that about `pixels` are left.
 
         Their rays stay what they were: u / k, v / k. An image of another size, in which a pixel has the depth of its
-        neighbour's ray, has the same errors at the same pixels wherever the camera is, and so says that it stands still.
+        neighbour's ray, has the same errors at the same pixels wherever the camera is: it would stand still.
         """
         k = max(1, round(np.sqrt(depth.size / pixels)))
         with np.errstate(invalid="ignore"):
