@@ -8,7 +8,6 @@ from course_lib.beyond.six_dof.image_motion import View, compiled_motion_equatio
 from course_lib.beyond.six_dof.poses import lengths, local, retract
 from course_lib.geometry import optical_pose
 from course_lib.rendering.renderer import DepthRenderer
-from course_lib.rendering.sensor import subsample_depth
 from tests.rendering.shapes import SMALL, fence, wall
 
 START = optical_pose(np.array([-1.0, 0.3, -0.3, 0.05, 0.1, -0.4]))
@@ -17,8 +16,7 @@ REST = np.zeros(6)
 
 
 def views(image):
-    coarse = SMALL.resized(32, 24)
-    return [View.of(subsample_depth(image, SMALL, coarse), coarse), View.of(image, SMALL)]
+    return [View.of(image, SMALL, pixels) for pixels in (32 * 24, 64 * 48)]
 
 
 def between(renderer, motion, rng, start=START, guess=REST, spread=SPREAD):
