@@ -41,7 +41,7 @@ CALLS = {
     "MonteCarloLocalizer": lambda renderer: started(MonteCarloLocalizer(renderer, 20, SIGMA)),
     "AnnealedLocalizer": lambda renderer: started(AnnealedLocalizer(renderer, 20)),
     "GuardedLocalizer": lambda renderer: started(GuardedLocalizer(MonteCarloLocalizer(renderer, 20, SIGMA))),
-    "RecoveringLocalizer": lambda renderer: started(RecoveringLocalizer(renderer, 20, least=50, most=50)),
+    "RecoveringLocalizer": lambda renderer: started(RecoveringLocalizer(renderer, 20, max_places=50)),
     "GlobalSearch": lambda renderer: lambda z: GlobalSearch.step(search_of(renderer), z, DOWN),
     "GuardedRig": lambda _: lambda z: GuardedRig.localize(RIG, z, np.zeros((32, 64, 3), np.uint8)),
 }
@@ -51,7 +51,7 @@ SEARCH = []
 
 def search_of(renderer):
     if not SEARCH:
-        SEARCH.append(GlobalSearch(renderer, least=50, most=50))
+        SEARCH.append(GlobalSearch(renderer, max_places=50))
     return SEARCH[0]
 
 

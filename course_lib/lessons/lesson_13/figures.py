@@ -180,7 +180,8 @@ def matching_panel() -> Panel:
         return Drawing(live.png(), alt, "\n".join(words))
 
     chairs = [name for name, thing in zip(names, upper.objects, strict=True) if thing.label == "chair"]
-    nearest = max(chairs, key=lambda name: upper.objects[names.index(name)].size[1])  # it stands before another chair
+    boxes = {name: upper.objects[names.index(name)].box for name in chairs}
+    nearest = max(chairs, key=lambda name: boxes[name][3] - boxes[name][1])  # the tallest stands before another chair
     controls = [
         Choice("chosen", "object of the upper image", tuple(names), nearest),
         Slider("tolerance", "tolerance [rad]", 0.001, 0.1, EPIPOLAR_TOLERANCE, 0.001),
