@@ -5,14 +5,16 @@ import importlib
 import numpy as np
 import pytest
 
-from course_lib.beyond import AnnealedLocalizer, warm_up
-from course_lib.beyond.six_dof import refinement
+from course_lib.beyond import AnnealedLocalizer, GlobalSearch, warm_up
+from course_lib.beyond.lost_and_found import stored_views
+from course_lib.beyond.six_dof import image_motion, refinement
 from course_lib.commands.warm_up import simplify_corridor
 from course_lib.depth_mcl import DepthCamera, DepthRenderer, MonteCarloLocalizer, SceneMap
 from course_lib.rendering import raster, simplification
 
 LIKELIHOOD = importlib.import_module("course_lib.depth_mcl.likelihood")  # the package's name for it is the function
-LOOPS = ((raster, "draw_views"), (LIKELIHOOD, "_sums"), (refinement, "_sums"))
+LOOPS = ((raster, "draw_views"), (LIKELIHOOD, "_sums"), (refinement, "_sums"), (image_motion, "_sums"))
+LOOPS += ((stored_views, "_scores"),)
 
 
 def compiled_forms():
@@ -31,7 +33,9 @@ def test_the_filter_compiles_nothing_that_the_set_up_did_not():
     with DepthRenderer(SceneMap(vertices, np.array([[0, 1, 2]])), camera) as renderer:
         for localizer in (MonteCarloLocalizer(renderer, 20, seed=1), AnnealedLocalizer(renderer, 20, seed=1)):
             localizer.initialize(np.zeros(6))
-            localizer.step(np.full((12, 16), 2.0, dtype=np.float32))
+            for _ in range(2):  # the second image is compared with the first
+                localizer.step(np.full((12, 16), 2.0, dtype=np.float32))
+        GlobalSearch(renderer, max_places=5).step(np.full((12, 16), 2.0, dtype=np.float32))
     assert compiled_forms() == before
 
 
