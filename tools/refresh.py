@@ -27,6 +27,7 @@ from course_lib.commands.test import OFFLINE_STARTUP
 from course_lib.files import atomic_write, temporary_folder
 from course_lib.lessons.kit.exercises import Exercise, find_exercise
 from course_lib.paths import REPOSITORY, STORE_SCENES, numbered_paths
+from tools.pace import write_minutes
 
 MAX_BYTES = 400_000
 HANGS_S = 1800.0  # only what hangs takes so long
@@ -34,7 +35,7 @@ METADATA = {
     "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
     "language_info": {"file_extension": ".py", "mimetype": "text/x-python", "name": "python"},
 }
-KEPT_CELL_METADATA = ("exercise", "tags", "jupyter")
+KEPT_CELL_METADATA = ("exercise", "tags", "jupyter", "jp-MarkdownHeadingCollapsed")
 
 
 class RefreshError(RuntimeError):
@@ -86,6 +87,7 @@ def refresh(path: Path, cell_timeout: float = HANGS_S) -> tuple[float, int]:
     write_solutions(notebook)
     seconds = execute(notebook, path.parent, cell_timeout)
     normalize(notebook)
+    write_minutes(notebook)
     text = nbformat.writes(notebook) + "\n"
     size = len(text.encode("utf-8"))
     if size > MAX_BYTES:

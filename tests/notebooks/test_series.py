@@ -15,7 +15,9 @@ ENTRIES = dict(re.findall(r"^### (.+)\n((?:.+\n?)+)", GLOSSARY, re.M))
 
 def minutes_of(number: str) -> int:
     """How many minutes a lesson says that it takes."""
-    return int(re.search(r"\*\*(\d+) minutes", numbered_paths()[number].read_text(encoding="utf-8")).group(1))
+    return int(
+        re.search(r"\*\*(?:About )?(\d+) minutes", numbered_paths()[number].read_text(encoding="utf-8")).group(1)
+    )
 
 
 def row_of(path) -> str:

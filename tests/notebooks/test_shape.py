@@ -33,7 +33,7 @@ def test_sections_are_all_there_in_order_below_a_title_that_promises_and_says_ho
     title = lesson.cells[0].source
     assert re.match(rf"# {lesson.number} · \S", title)
     assert 1 <= len(re.findall(r"^\* ", title, re.M)) <= 3, "promises"
-    assert 20 <= int(re.search(r"\*\*(\d+) minutes", title)[1]) <= 50
+    assert 20 <= int(re.search(r"\*\*(?:About )?(\d+) minutes", title)[1]) <= 50
     assert re.search(r"[Pp]aper", title)
 
 

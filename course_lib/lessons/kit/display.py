@@ -7,13 +7,20 @@ import re
 from typing import Literal
 
 from IPython.display import display
+from matplotlib.axis import Axis
+from matplotlib.category import StrCategoryFormatter
+from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedFormatter, FuncFormatter
 from PIL import Image
 
-from course_lib.lessons.kit.compression import png_bytes, webp_bytes
+from course_lib.lessons.kit.compression import png_bytes, svg_bytes, webp_bytes
+
+PictureKind = Literal["png", "webp", "svg+xml"]
 
 # Pixels. In a narrower window the reader scrolls the figure, because in a smaller picture the labels are unreadable.
 MIN_WIDTH = 640
+MAX_SVG_BYTES = 40_000  # a drawing of more points takes less as pixels
 
 
 class FigureError(ValueError):
@@ -26,21 +33,31 @@ def described(figure: Figure, alt: str) -> Figure:
     return figure
 
 
-def show(figure: Figure, alt: str = "", photograph: bool = False) -> None:
-    """Display a finished figure as one compressed picture with its alternative text (default: of `described`).
+def show(figure: Figure, caption: str = "", alt: str = "", photograph: bool = False) -> None:
+    """Display a finished figure as one compressed picture with its caption and its alternative text.
 
-    photograph: store a WebP, because a photograph in the few colours of a palette shows patches.
-    Raises `FigureError` if the title, `alt` or an axis label with its unit (such as "depth Z [m]") is missing.
+    Lines stay lines (SVG), and images become a PNG. caption: a sentence, such as "Figure 6.1. Two particles." alt:
+    default that of `described`. photograph: store a WebP, because a photograph in the few colours of a palette shows
+    patches. Raises `FigureError` if the title, `alt` or an axis label with its unit (such as "depth Z [m]") is missing.
     """
     require_labels(figure)
-    alt = alt or str(figure.get_label())
-    display(Picture(webp_bytes(figure), alt, "webp") if photograph else Picture(png_bytes(figure), alt))
+    if photograph:
+        data, kind = webp_bytes(figure), "webp"
+    else:
+        svg = b"" if has_images(figure) else svg_bytes(figure)
+        data, kind = (svg, "svg+xml") if 0 < len(svg) <= MAX_SVG_BYTES else (png_bytes(figure), "png")
+    display(Picture(data, alt or str(figure.get_label()), kind, caption))
+
+
+def has_images(figure: Figure) -> bool:
+    """Return whether a figure shows pixels, which an SVG would only wrap."""
+    return any(axes.images or any(isinstance(c, QuadMesh) for c in axes.collections) for axes in figure.axes)
 
 
 def require_labels(figure: Figure) -> None:
     """Raise `FigureError` unless every axes has a title and labels with units in square brackets.
 
-    A drawing, whose axes are off, has nothing to label: it needs its title only.
+    A drawing, whose axes are off, has nothing to label, so it needs its title only. Categories have no unit.
     """
     for axes in figure.axes:
         x, y = axes.get_xlabel(), axes.get_ylabel()
@@ -50,29 +67,37 @@ def require_labels(figure: Figure) -> None:
         elif not (any(map(axes.get_title, ("left", "center", "right"))) or figure.get_suptitle()):
             raise FigureError("this figure has no title: set one with axes.set_title(...)")
         for name, label in labels.items() if axes.axison else ():
+            if name in "xy" and shows_categories(getattr(axes, f"{name}axis")):
+                continue
             if not re.search(r"\[[^\]]+\]", label):
                 raise FigureError(f"the {name} label {label!r} has no unit: write it as 'depth Z [m]' or 'weight [-]'")
 
 
+def shows_categories(axis: Axis) -> bool:
+    """Return whether the ticks of an axis are names."""
+    return isinstance(axis.get_major_formatter(), FixedFormatter | FuncFormatter | StrCategoryFormatter)
+
+
 class Picture:
-    """A PNG or WebP with alternative text.
+    """A PNG, WebP or SVG with alternative text and, below it, its caption.
 
     It is shown as the HTML `<img alt=...>`, because JupyterLab drops the alternative text of an `image/png` output.
     """
 
-    def __init__(self, data: bytes, alt: str, kind: Literal["png", "webp"] = "png") -> None:
+    def __init__(self, data: bytes, alt: str, kind: PictureKind = "png", caption: str = "") -> None:
         if len(alt.split()) < 4:
             raise FigureError(f"the alternative text must say what the picture shows, in a sentence; got {alt!r}")
-        self.data, self.alt, self.kind = data, " ".join(alt.split()), kind
+        self.data, self.alt, self.kind, self.caption = data, " ".join(alt.split()), kind, " ".join(caption.split())
 
     def html(self) -> str:
         """Return the `<img>` element. It contains the picture's bytes."""
         data = base64.b64encode(self.data).decode("ascii")
-        min_width = min(MIN_WIDTH, Image.open(io.BytesIO(self.data)).width)
-        return (
+        wide = MIN_WIDTH if self.kind == "svg+xml" else min(MIN_WIDTH, Image.open(io.BytesIO(self.data)).width)
+        image = (
             f'<img alt="{html.escape(self.alt)}" src="data:image/{self.kind};base64,{data}"'
-            f' style="max-width: 100%; min-width: {min_width}px">'
+            f' style="max-width: 100%; min-width: {wide}px">'
         )
+        return f"{image}<p><em>{html.escape(self.caption)}</em></p>" if self.caption else image
 
     def _repr_mimebundle_(self, include=None, exclude=None) -> dict:
         return {"text/plain": repr(self), "text/html": self.html()}

@@ -72,3 +72,17 @@ def test_a_picture_carries_its_words_and_is_scrolled_rather_than_shrunk_until_no
     assert 'alt="A &quot;wall&quot; &lt;a&gt; &amp;" src="data:image/png;base64,' in bundle["text/html"]
     assert f"min-width: {least}px" in bundle["text/html"]
     assert bundle["text/plain"] == 'Picture: A "wall" <a> &'
+
+
+def test_lines_stay_lines_with_a_caption_and_the_same_bytes_and_names_of_categories_need_no_unit(monkeypatch):
+    shown = []
+    monkeypatch.setattr("course_lib.lessons.kit.display.display", shown.append)
+    for _ in range(2):
+        figure, axes = figures.new_figure(size=(5, 2))
+        axes.bar(["paper", "ours"], [1, 2])
+        axes.set(title="Errors", ylabel="error [m]")
+        show(figure, "Figure 1.1. Two errors.", "Two bars, the second is higher")
+    first, second = (picture.html() for picture in shown)
+    assert first == second
+    assert "data:image/svg+xml;base64," in first
+    assert first.endswith("<p><em>Figure 1.1. Two errors.</em></p>")
