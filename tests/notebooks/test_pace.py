@@ -1,4 +1,4 @@
-"""The core path of a lesson: at most 50 minutes by the model of tools/pace.py, and nothing in it needs a part *More*."""
+"""The core path of a lesson: at most 50 minutes by the model of tools/pace.py, and it needs no part *More*."""
 
 import ast
 import builtins
