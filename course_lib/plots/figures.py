@@ -1,8 +1,8 @@
 """One style for every figure that lessons and commands draw.
 
 Colours are those of Okabe and Ito ("Color Universal Design", 2008), for readers with any common form of colour
-blindness; marker and line style change along with the colour. Depth is coloured with cividis (Nunez, Anderton, Renslow,
-PLOS ONE 13(7), 2018). Figures are drawn with Agg and never through matplotlib's global state.
+blindness; marker and line style change along with the colour. Depth is coloured with plasma, which is clear of grey and
+as safe. Figures are drawn with Agg and never through matplotlib's global state.
 """
 
 from collections.abc import Sequence
@@ -52,7 +52,7 @@ def new_figure(rows: int = 1, columns: int = 1, size: tuple[float, float] = (6.4
 
 def depth_image(axes: Axes, depth: np.ndarray, title: str, limits: tuple[float, float]) -> AxesImage:
     """Draw a depth image `(H, W)` in metres, coloured between `limits`; hatched where nothing was hit (inf or nan)."""
-    colours = colormaps["cividis"].with_extremes(bad=(1, 1, 1, 0))  # clear: the hatched ground shows through
+    colours = colormaps["plasma"].with_extremes(bad=(1, 1, 1, 0))  # clear: the hatched ground shows through
     axes.patch.set(facecolor="white", edgecolor="0.55", hatch="////", linewidth=0)
     drawn = np.ma.masked_invalid(depth)
     image = axes.imshow(drawn, cmap=colours, vmin=limits[0], vmax=limits[1], interpolation="nearest")

@@ -43,7 +43,7 @@ def new_plotter(
     """
     pyvista = _pyvista()
     theme = pyvista.themes.DocumentTheme()  # white, whatever the reader's own theme is
-    theme.cmap, theme.show_scalar_bar = "cividis", False  # the colours of the figures; a page cannot show the bar
+    theme.cmap, theme.show_scalar_bar = "cividis", False  # safe colours; a page cannot show the bar
     theme.lighting_params.ambient, theme.lighting_params.diffuse = 0.35, 0.65  # no wall is black, no floor white
     plotter = pyvista.Plotter(off_screen=True, window_size=list(size), theme=theme)
     if viewpoint is not None:

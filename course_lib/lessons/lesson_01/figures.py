@@ -27,9 +27,9 @@ def turns_figure() -> Figure:
     """Draw positive yaw, pitch and roll by 30 degrees, each seen along the axis that it turns about."""
     figure, axes = figures.new_figure(1, 3, size=(9.6, 3.4))
     views = (
-        (5, (0, 1), "Yaw, from above: to the left", "x [m]", "y [m]"),
-        (4, (0, 2), "Pitch, from its right: down", "x [m]", "z [m]"),
-        (3, (1, 2), "Roll, from behind: left side up", "y [m] (grows to the left)", "z [m]"),
+        (5, (1, 0), "Yaw to the left, from above", "y [m] (grows to the left)", "x [m]"),
+        (4, (0, 2), "Pitch down, from the right", "x [m]", "z [m]"),
+        (3, (1, 2), "Roll, left side up, from behind", "y [m] (grows to the left)", "z [m]"),
     )
     for a, (angle, shown, title, x_label, y_label) in zip(axes, views, strict=True):
         turn = np.linspace(0, np.deg2rad(30), 20)[:, None] * np.eye(6)[angle]
@@ -38,15 +38,16 @@ def turns_figure() -> Figure:
             for (x, y), style in zip(ends.T, STYLES, strict=True):
                 if np.hypot(x, y) > 1e-6:
                     a.plot([0, x], [0, y], **(style | how))
-        path = 0.72 * rotations[:, :, shown[0]]
+        path = 0.72 * rotations[:, :, min(shown)]
         a.plot(*path.T, color=figures.BLACK, linewidth=1.2)
         a.annotate("", path[-1], path[-4], arrowprops={"arrowstyle": "->", "color": figures.BLACK})
         a.set(title=title, xlabel=x_label, ylabel=y_label, xlim=(-1.25, 1.25), ylim=(-1.25, 1.25), aspect="equal")
-    axes[2].invert_xaxis()
+    for a in axes[[0, 2]]:
+        a.invert_xaxis()  # the body's left is on the left
     for name, style in zip(AXES, STYLES, strict=True):
         axes[0].plot([], [], **(style | {"markevery": None}), linewidth=2.2, label=name)
     axes[0].plot([], [], color="0.7", label="before the turn")
-    axes[0].legend(loc="lower left", fontsize=8, framealpha=0.95)
+    axes[0].legend(loc="lower right", fontsize=8, framealpha=0.95)
     alt = "Three turns by 30 degrees: yaw turns forward to the left, pitch turns it down, roll lifts the left side."
     return described(figure, alt)
 
@@ -127,7 +128,7 @@ def turn_per_degree(pitch: float) -> tuple[float, float]:
 def lock_figure(pitch_deg: np.ndarray, turns: np.ndarray) -> Figure:
     """Draw the least and greatest turn per degree of change `(n, 2)` over pitch [degrees]."""
     figure, axes = figures.new_figure(size=(6.4, 3.0))
-    axes.axvspan(-18, 18, color="0.9", label="pitch of the hand-held recording")
+    axes.axvspan(-16, 16, color="0.9", label="pitch of the hand-held recording")
     for index, name in enumerate(("least turn", "greatest turn")):
         axes.plot(pitch_deg, turns[:, index], **figures.line_style(index), markevery=15, label=name)
     axes.set(title="How far one degree of angle change turns the camera", xlabel="pitch [degrees]")
@@ -150,7 +151,7 @@ CONTROLS = [
 
 def _matrix_texts(axes: Axes) -> np.ndarray:
     """Return the texts (3, 4) of the first rows of a pose matrix; each column has the colour of its axis."""
-    axes.set(title="Pose matrix, body to world", xlabel="column [-]", ylabel="row [-]")
+    axes.set(title="Pose matrix, body to world")
     axes.set(xlim=(0.5, 4.5), ylim=(4.5, 0.5), xticks=range(1, 5), yticks=range(1, 5))
     axes.set(xticklabels=[*AXES, "position"], yticklabels=["x", "y", "z", ""])
     axes.tick_params(length=0)

@@ -94,7 +94,7 @@ def views_figure(images: dict[str, np.ndarray]) -> Figure:
     """Draw depth images of the room side by side."""
     alt = """Depth images from one place in the room: the room, the map from one station with hatched holes, and the map
         from three."""
-    return described(figures.depth_images(list(images.values()), list(images), (0.0, 6.0)), alt)
+    return described(figures.depth_images(list(images.values()), list(images), (0.0, 5.0)), alt)
 
 
 def corridor_figure(scene_map: SceneMap, true_world: SceneMap) -> Figure:
@@ -128,7 +128,7 @@ def survey_panel() -> Panel:
     (spots,) = plan.plot([], [], "s", color=figures.VERMILION, markersize=7, label="stations")
     plan.set(title="From above, cut at 1.2 m", **ROOM_FROM_ABOVE)
     plan.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=3, fontsize=7, columnspacing=0.8, frameon=False)
-    image = figures.depth_image(view, np.zeros(CAMERA.shape), "What a camera sees of the map", (0, 6))
+    image = figures.depth_image(view, np.zeros(CAMERA.shape), "What a camera sees of the map", (0, 5))
     figures.colour_bar(figure, image, view)
     edges = np.linspace(0, 100, 41)
     steps = spread.stairs(np.ones(40), edges, fill=True, color=figures.BLUE)

@@ -88,7 +88,7 @@ EXERCISES = [
         rng.integers(4, 64) / 64, rng.integers(20, 160) / 4,
     ), "warm-up", cases={
         "nothing drawn": lambda rng: (np.ones((3, 4)), 0.125, 30.0),
-        "the paper's planes": lambda rng: (np.linspace(0.0, 0.9999, 9)[None], 0.125, 10.0),
+        "a corridor's planes": lambda rng: (np.linspace(0.0, 0.9999, 9)[None], 0.125, 10.0),
     }, mistakes="""
         near * far / (far - b * (far - near)) => near + b * (far - near)
         You spread b evenly between near and far, but b is not linear in Z. Solve the equation of b for Z.

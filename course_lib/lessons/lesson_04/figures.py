@@ -22,7 +22,7 @@ def idea_figure(points: np.ndarray, image: np.ndarray) -> Figure:
     """Draw the camera's points from above, and the depth image that they make."""
     figure, (plan, right) = figures.new_figure(1, 2, size=(9.2, 3.3))
     x, _, z = points[np.isfinite(points).all(axis=-1)].T
-    plan.scatter(x, z, c=z, s=1.2, cmap="cividis", vmin=0, vmax=10)
+    plan.scatter(x, z, c=z, s=1.2, cmap="plasma", vmin=0, vmax=10)
     plan.plot(0, 0, "s", color=figures.BLACK, markersize=8)
     plan.text(0.25, -0.15, "camera")
     plan.plot([[0, 0], [-4, 4]], [[0, 0], [10, 10]], color="0.6", linewidth=0.8)
@@ -53,18 +53,6 @@ def phase_figure(distances: tuple[float, ...]) -> Figure:
     right.set(title="What the camera reads", xlabel="true range r [m]", ylabel="range that is read [m]")
     alt = """Left, hands of a clock for ranges of 2, 6 and 12 m: 2 and 12 m nearly coincide; right, the range read over
         the true range, a saw that falls back to zero every 10 m."""
-    return described(figure, alt)
-
-
-def noise_figure(distances: list[float], sigmas_mm: np.ndarray) -> Figure:
-    """Draw how much a wall's depth scatters from frame to frame, over its distance."""
-    figure, axes = figures.new_figure(size=(5.6, 2.8))
-    axes.plot(distances, sigmas_mm, **figures.line_style(0), label="measured, 20 frames")
-    ends = np.array([0, distances[-1]])
-    axes.plot(ends, sigmas_mm[0] / distances[0] * ends, "--", color="0.4", label="in proportion to the distance")
-    axes.set(title="Noise of a white wall", xlabel="distance [m]", ylabel="one sigma [mm]", ylim=(0, None))
-    axes.legend(loc="upper left")
-    alt = "The scatter of a wall's depth grows from 7 mm at 2 m to about 29 mm at 8 m, in proportion to the distance."
     return described(figure, alt)
 
 

@@ -127,7 +127,7 @@ def _ranges(
 
 
 def registration_error(scans: list[Scan], rng: Generator, n_points: int = 20_000) -> dict[str, float]:
-    """How far apart neighbouring stations' points lie, m: the paper's "mean point distance after registration"."""
+    """Return how far apart neighbouring stations' points lie, m. Paper 1 gives this for its scan and its map."""
     # Spacing and noise are in it, so the same number with the true poses stands beside it.
     result = {}
     for key, name in (("mean_point_distance_m", "registered_pose"), ("mean_point_distance_true_poses_m", "true_pose")):
