@@ -8,7 +8,7 @@ from course_lib.depth_mcl.sequence import DepthSequence
 from course_lib.lessons.kit.display import described
 from course_lib.lessons.lesson_08.panel import STRETCH
 from course_lib.lessons.lesson_08.stored import StoredRun
-from course_lib.plots.corridor_figures import figure_5, figure_6, floor_plan
+from course_lib.plots.corridor_figures import figure_5, floor_plan
 from course_lib.plots.figures import BLACK, BLUE, GREEN, ORANGE, line_style, new_figure
 from course_lib.rendering.scene_map import SceneMap
 
@@ -75,14 +75,6 @@ def figure_5_beside(run: StoredRun, sequence: DepthSequence, scene_map: SceneMap
     walls = floor_plan(scene_map.vertices, sequence.camera_to_world[0, 2, 3])
     alt = "The true path from above with our estimates along all of it, and the Fallon-style estimates near it."
     return described(figure_5(sequence.path_on_floor, shown, walls), alt)
-
-
-def figure_6_beside(run: StoredRun) -> Figure:
-    """Figure 6 of the paper with the Fallon-style filter beside ours, on a logarithmic axis."""
-    shown = {"ours": run.columns["proposed_nearest_m"], "Fallon-style, 20 x 15": run.columns["fallon_nearest_m"]}
-    alt = "Nearest-path errors over the frames, on a logarithmic axis: ours lower, Fallon-style higher, 0.30 m dashed."
-    title = "Nearest-path error of every frame (like the paper's figure 6)"
-    return described(figure_6(run.columns["frame"], shown, title), alt)
 
 
 def along(run: StoredRun, true_x: np.ndarray) -> Figure:
