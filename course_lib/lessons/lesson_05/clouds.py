@@ -34,8 +34,8 @@ def walk(true: np.ndarray, sigma: np.ndarray, n: int, seed: int, keep_nearest: b
 
     Return its clouds `(T, N, 6)`, and the distance `(T,)` [m] on the floor from the wagon to its nearest particle.
     keep_nearest: after each move an oracle names the particle that is nearest to the wagon on the floor, and all start
-    from there. No weighting could do better for x and y. own_axes: sigma's first two are along the wagon's forward and
-    left axes, whose heading a compass gives, and not along the world's x and y.
+    from there. own_axes: sigma's first two are along the wagon's forward and left axes, whose heading a compass gives,
+    and not along the world's x and y.
     """
     rng = np.random.default_rng(seed)
     particles = initial_particles(true[0], n)

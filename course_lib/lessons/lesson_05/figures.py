@@ -36,19 +36,17 @@ def clouds_figure(clouds: np.ndarray, frames: list[int]) -> Figure:
     return described(figure, alt)
 
 
-def beliefs_figure(beliefs: dict[str, np.ndarray], doors: list[int], shares: dict[str, np.ndarray]) -> Figure:
-    """Draw beliefs over the cells of a corridor as bars, doors below them, and the shares of a particle set as dots."""
+def beliefs_figure(beliefs: dict[str, np.ndarray], doors: list[int]) -> Figure:
+    """Draw beliefs over the cells of a corridor as bars, and the doors below them."""
     figure, axes = figures.new_figure(2, 2, size=(9.4, 4.4))
     for a, (title, belief) in zip(axes.flat, beliefs.items(), strict=True):
         a.bar(np.arange(len(belief)), belief, color=figures.SKY_BLUE, label="belief, exact")
         a.plot(doors, np.full(len(doors), -0.025), "s", color=figures.VERMILION, markersize=7, label="door")
-        if title in shares:
-            a.plot(shares[title], "o", color=figures.BLACK, markersize=4, label="200 particles")
-            a.legend(loc="upper right", fontsize=8)
-        a.set(title=title, xlabel="cell of the corridor [-]", ylabel="probability [-]")
-        a.set(ylim=(-0.05, 0.4), xticks=np.arange(0, len(belief), 5))
-    alt = """Probabilities of 20 cells: five equal peaks at the doors; moved on by one cell and blurred, with the
-        shares of 200 particles scattered about them; one cell with 0.35 after the fourth look."""
+        a.set(title=title, xlabel="cell of the corridor", ylabel="probability [-]", ylim=(-0.05, 0.4))
+        a.set_xticks(range(0, len(belief), 5), [str(cell) for cell in range(0, len(belief), 5)])
+    axes[0, 1].legend(loc="upper right", fontsize=8)
+    alt = """Probabilities of 20 cells. There are five equal peaks at the doors. A move shifts them by one cell and
+        blurs them. After the fourth look cell 5 alone stands out with 0.35."""
     return described(figure, alt)
 
 

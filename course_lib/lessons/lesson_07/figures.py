@@ -37,12 +37,11 @@ def comb_figure(w: np.ndarray, points: dict[str, np.ndarray]) -> Figure:
         colour = (figures.SKY_BLUE, "#F4D9A8")[i % 2]
         axes.add_patch(Rectangle((left, 0), right - left, len(points) + 0.6, facecolor=colour, edgecolor="0.4"))
         axes.text((left + right) / 2, len(points) + 0.3, str(i), ha="center", va="center", fontsize=8)
-    for row, (name, values) in enumerate(points.items()):
+    for row, values in enumerate(points.values()):
         axes.plot(values, np.full(len(values), len(points) - row - 0.5), "v", color=figures.BLACK, markersize=6)
-        axes.text(-0.01, len(points) - row - 0.5, name, ha="right", va="center")
-    axes.set(xlim=(0, 1), ylim=(0, len(points) + 0.6), yticks=[], xlabel="sum of the weights so far [-]")
+    axes.set_yticks(len(points) - 0.5 - np.arange(len(points)), list(points))
+    axes.set(xlim=(0, 1), ylim=(0, len(points) + 0.6), xlabel="sum of the weights so far [-]")
     axes.set_title("Each point picks the particle whose field it falls into")
-    axes.set_ylabel("scheme [-]", labelpad=72)
     axes.grid(False)
     alt = "A strip of six fields; points: systematic evenly spaced, stratified one in each sixth, multinomial anywhere."
     return described(figure, alt)
@@ -68,7 +67,8 @@ def copies_figure(expected: np.ndarray, found: dict[str, np.ndarray]) -> Figure:
     for index, (name, values) in enumerate(found.items()):
         style = figures.line_style(index + 2) | {"linestyle": "none", "markersize": 8}
         axes.plot(places + 0.16 * (2 * index - 1), values, **style, label=name)
-    axes.set(title="Copies of each particle, in the mean", xlabel="particle [-]", ylabel="copies [-]", xticks=places)
+    axes.set(title="Copies of each particle, in the mean", xlabel="particle", ylabel="copies [-]")
+    axes.set_xticks(places, [str(place) for place in places])
     axes.legend(**figures.BESIDE)
     alt = """Mean copies of ten particles: course_lib meets N w everywhere; filterpy gives the two heavy ones 4 to 6
         copies and the eight light ones none."""

@@ -11,9 +11,10 @@ from collections import namedtuple
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Rectangle
+from scipy.special import softmax
 
 from course_lib.depth_mcl import particle_filter
-from course_lib.depth_mcl.likelihood import likelihood, normalize_likelihood, valid_pixels, weights
+from course_lib.depth_mcl.likelihood import ALPHA, likelihood, normalize_likelihood, valid_pixels, weights
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
 from course_lib.depth_mcl.motion import propagate
 from course_lib.geometry import state_from_optical_pose
@@ -37,7 +38,7 @@ ALLOWED_AFTER = {
 Stretch = namedtuple("Stretch", "measured true walls renderer")
 StepperState = namedtuple("StepperState", "frame done parents")
 View = namedtuple("View", "particles weights score ess estimate indices")
-FollowedStretch = namedtuple("FollowedStretch", "errors ess spread")
+FollowedStretch = namedtuple("FollowedStretch", "errors ess")
 
 
 @functools.cache
@@ -57,16 +58,17 @@ def start() -> StepperState:
     return StepperState(1, "weigh", particle_filter.initial_particles(corridor_stretch().true[0], MAX_PARTICLES))
 
 
-def look(state: StepperState, alpha: float, beta: float, n_particles: int, noise: float, seed: int = 1) -> View:
+def look(state: StepperState, beta: float, n_particles: float = 50, noise: float = 1.0, seed: int = 1) -> View:
     """Do all steps of the present frame; noise: a factor on the system noise of 0.15 m, 0.04 m, 1.5 degrees.
 
     The parents, evenly thinned or copied to N, get this frame's noise: particles `(N, 6)`. score: l / m of the best.
     indices `(N,)`: which particles live on.
     """
-    stretch, parents = corridor_stretch(), state.parents[np.arange(n_particles) * len(state.parents) // n_particles]
+    stretch, n = corridor_stretch(), int(n_particles)
+    parents = state.parents[np.arange(n) * len(state.parents) // n]
     particles = propagate(parents, noise * np.array(SIGMA_XY_YAW), np.random.default_rng([seed, state.frame]))
     measured = stretch.measured[state.frame]
-    raw = likelihood(measured, stretch.renderer.render(particles), alpha)
+    raw = likelihood(measured, stretch.renderer.render(particles), ALPHA)
     w = weights(normalize_likelihood(raw), beta)
     indices = particle_filter.resample(w, np.random.default_rng([seed, state.frame, 1]))
     ess, estimate = particle_filter.effective_sample_size(w), particle_filter.weighted_mean_state(particles, w)
@@ -89,15 +91,21 @@ def step(state: StepperState, name: str, view: View) -> StepperState:
     return StepperState(state.frame + 1, "propagate", parents)
 
 
-def follow(beta: float, resampled: bool = True) -> FollowedStretch:
-    """Do the steps over the whole stretch: errors on the floor `(T,)` [m], sample sizes `(T,)`, spread along x [m]."""
-    true, state, errors, ess = corridor_stretch().true, start(), [], []
+def follow(beta: float, resampled: bool = True, carried: bool = False, seed: int = 1) -> FollowedStretch:
+    """Do the steps over the whole stretch, and return errors on the floor `(T,)` [m] and sample sizes `(T,)`.
+
+    carried: multiply the weights into those of the frame before, which is right if nothing is resampled.
+    """
+    true, state, errors, ess, logs = corridor_stretch().true, start(), [], [], 0.0
     while True:
-        view = look(state, 0.1, beta, 50, 1.0)
-        errors.append(np.linalg.norm(view.estimate[:2] - true[state.frame, :2]))
-        ess.append(view.ess)
+        view = look(state, beta, seed=seed)
+        logs = np.log(np.maximum(view.weights, 1e-300)) + (logs if carried else 0.0)
+        w = softmax(logs)
+        estimate = particle_filter.weighted_mean_state(view.particles, w)
+        errors.append(np.linalg.norm(estimate[:2] - true[state.frame, :2]))
+        ess.append(particle_filter.effective_sample_size(w))
         if state.frame == len(true) - 1:
-            return FollowedStretch(np.array(errors), np.array(ess), view.particles[:, 0].std())
+            return FollowedStretch(np.array(errors), np.array(ess))
         state = step(state._replace(done="resample" if resampled else "estimate"), "propagate", view)
 
 
@@ -120,11 +128,9 @@ def describe(state: StepperState, view: View) -> str:
 
 
 CONTROLS = [
-    Slider("alpha", "alpha [m]", 0.01, 1.0, 0.1, 0.01),
     Slider("beta", "beta [-]", 0.005, 1.0, 0.1, 0.005),
     Slider("n_particles", "number of particles N", 5, MAX_PARTICLES, 50, 5),
     Slider("noise", "noise, times 0.15 m, 0.04 m, 1.5 degrees", 0.0, 3.0, 1.0, 0.1),
-    Slider("seed", "seed", 0, 9, 1, 1),
 ]
 
 
@@ -151,11 +157,8 @@ def stepper_panel() -> Panel:
     bar.set_ylabel("effective sample size [particles]")
     live = LiveFigure(figure, [headings, cloud, truth, estimate, stems, size, full])
 
-    def present_view(n_particles: float, seed: float, **values: float) -> View:
-        return look(state, n_particles=int(n_particles), seed=int(seed), **values)
-
     def draw(**values: float) -> Drawing:
-        view, true = present_view(**values), stretch.true[state.frame]
+        view, true = look(state, **values), stretch.true[state.frame]
         n, weighed = len(view.particles), state.done in ("weigh", "estimate")
         w = view.weights if weighed else np.full(n, 1 / n)
         shown, share = view.particles, w
@@ -181,7 +184,7 @@ def stepper_panel() -> Panel:
         message = refusal(state, name)
         if not message:
             before = state._replace(done="resample") if whole_round else state
-            after = step(before, name, present_view(**values))
+            after = step(before, name, look(state, **values))
             state = after._replace(done="estimate") if whole_round else after
         return values
 

@@ -8,14 +8,11 @@ from course_lib.depth_mcl.sequence import DepthSequence
 from course_lib.lessons.kit.display import described
 from course_lib.lessons.lesson_08.panel import STRETCH
 from course_lib.lessons.lesson_08.stored import StoredRun
-from course_lib.plots.corridor_figures import floor_plan
+from course_lib.plots.corridor_figures import figure_5, floor_plan
 from course_lib.plots.figures import BLACK, BLUE, GREEN, ORANGE, line_style, new_figure
 from course_lib.rendering.scene_map import SceneMap
 
-# Alternative texts of what is drawn elsewhere.
 SCENE = "A black path along the corridor, blue arrows on it, and flat ellipsoids, longer along the corridor."
-FIGURE_5 = "The true path from above with our estimates along all of it, and the Fallon-style estimates near it."
-FIGURE_6 = "Nearest-path errors over the frames, on a logarithmic axis: ours lower, Fallon-style higher, 0.30 m dashed."
 
 
 def experiment(scene_map: SceneMap, sequence: DepthSequence) -> Figure:
@@ -70,6 +67,14 @@ def as_in_the_paper(run: StoredRun, path: np.ndarray) -> Figure:
     error.set_ylim(0, None)
     alt = "Above, the winding true path with our estimates on it; below, our error of every frame, mostly below 0.05 m."
     return described(figure, alt)
+
+
+def figure_5_beside(run: StoredRun, sequence: DepthSequence, scene_map: SceneMap) -> Figure:
+    """Figure 5 of the paper with the Fallon-style filter beside ours, and the map's walls."""
+    shown = {"ours": run.positions("proposed"), "Fallon-style, 20 x 15": run.positions("fallon")}
+    walls = floor_plan(scene_map.vertices, sequence.camera_to_world[0, 2, 3])
+    alt = "The true path from above with our estimates along all of it, and the Fallon-style estimates near it."
+    return described(figure_5(sequence.path_on_floor, shown, walls), alt)
 
 
 def along(run: StoredRun, true_x: np.ndarray) -> Figure:

@@ -24,7 +24,7 @@ STRETCH = range(60, 84)  # frames that are localized live: a good two metres of 
 OFFSETS = np.unique(np.round(np.r_[-5.4:-2.5:0.4, -2.6:2.7:0.3, -0.4:0.41:0.05], 2))
 TABLE_SIZE = (44, 36)  # pixels of the panel's images: a sixteenth, so that its table is made in seconds
 CONTROLS = [
-    Slider("sigma_x", "sigma along the path [m]", 0.01, 0.6, 0.15, 0.01),
+    Slider("sigma_x", "sigma along the path [m]", 0.01, 0.6, 0.03, 0.01),
     Slider("n_particles", "number of particles N", 5, 400, 200, 5),
     Choice("beta", "beta", ("0.0001", "0.001", "0.01", "0.1", "1"), "0.01"),
     Slider("start_error", "start wrong by [m]", -2.0, 2.0, 0.0, 0.1),
