@@ -119,7 +119,7 @@ def threshold_figure(scores: dict[float, measures.ThresholdScore], chosen: float
         bars = np.abs(np.array([wilson_percent(*count) for count in counts]).T / 100 - shares)
         axes.errorbar(np.add(list(scores), 0.006 * index), shares, bars, label=name, capsize=3, **line_style(index))
     axes.axvline(chosen, color=BLACK, linewidth=1.2, linestyle="--", label="chosen in training")
-    axes.set(title="Precision and recall over the threshold", xlabel="score threshold [-]", ylabel="share [-]", ylim=(0.4, 1.02))
+    axes.set(title="Precision and recall", xlabel="score threshold [-]", ylabel="share [-]", ylim=(0.4, 1.02))
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     alt = "Precision rises from 0.88 to 1 and recall falls from 0.96 to 0.63 as the score threshold goes from 0.1 to "
     return described(figure, alt + "0.9; bars show the 95 % intervals.")
