@@ -93,21 +93,21 @@ EXERCISES = [
         That is our own panorama, whose middle is ahead. Here the left edge is ahead, and 0 is a pixel's middle.
         -(column + 0.5) => (column + 0.5)
         (0.5 - (row + 0.5) / height) => ((row + 0.5) / height - 0.5)
-        Mirrored, or upside down: columns run to the right, rows run down, so azimuth and elevation fall with them.
+        Your picture is mirrored or upside down. Columns run to the right and rows down, so both angles fall with them.
         flat = np.cos(elevation) => flat = 1
-        Your vectors are longer than 1 off the horizon: x and y shrink with the cosine of the elevation.
+        Your vectors are longer than 1 off the horizon. x and y shrink with the cosine of the elevation.
         / width * 2 * np.pi => / width * np.pi
         / height) * np.pi => / height) * 2 * np.pi
         The whole width is a whole turn, 2 pi. The whole height is half a turn, pi.
         (0.5 - (row + 0.5) / height) => (row + 0.5) / height
         You measure from straight up, so at the horizon yours is 90 degrees. Elevation is 0 there.
         2 * np.pi => 360 and also * np.pi => * 180
-        np.cos and np.sin take radians; you give them degrees.
+        np.cos and np.sin take radians, but you give them degrees.
         (column + 0.5) => column and also (row + 0.5) => row
         (column + 0.5) => column
         The numbers 0 of its columns and of its rows are the middles of pixels, so add half a pixel to both.
         np.sin(elevation)]) => np.sin(elevation)])[[1, 0, 2]]
-        The axes are exchanged: x is ahead (cosine of the azimuth), y is left (its sine), z is up.
+        You exchanged the axes. x is ahead (cosine of the azimuth), y is left (its sine), z is up.
     """),
     Exercise("11.2", column_gap_deg, two_columns, cases={
         "half a turn": lambda rng: (960.0, 320.0, 1280), "half a turn to the left": lambda rng: (320.0, 960.0, 1280),
@@ -118,18 +118,18 @@ EXERCISES = [
         (gap + 180) % 360 - 180 => gap - 360 if gap >= 180 else gap + 360 if gap < -180 else gap
         An `if` takes away one turn at most. Columns beyond the edges may be more than one turn apart.
         (gap + 180) % 360 - 180 => gap
-        Across the seam yours is nearly a whole turn. Bring the difference back to [-180, 180).
+        Across the seam your result is nearly a whole turn. Bring the difference back to [-180, 180).
         (u_from - u_to) => (u_to - u_from)
-        Your sign is turned around: azimuth grows to the left, where columns get smaller.
+        Your sign is wrong. Azimuth grows to the left, where columns get smaller.
         (gap + 180) % 360 - 180 => abs((gap + 180) % 360 - 180)
-        The sign is lost: left is positive, right is negative. Wrap the gap with its sign.
+        The sign is lost. Left is positive and right is negative, so wrap the gap with its sign.
         (gap + 180) % 360 - 180 => gap % 360
-        Yours lies in [0, 360): a thing 10 degrees to the right comes out as 350.
+        Your result lies in [0, 360), so 10 degrees to the right become 350.
         (gap + 180) % 360 - 180 => 180 - (180 - gap) % 360
-        Half a turn is -180 here, never +180: the range [-180, 180) does not hold its right end.
+        Half a turn is -180 here, never +180, because the range [-180, 180) does not hold its right end.
         (gap + 180) % 360 - 180 => gap if abs(gap) < 180 else 360 - gap
         (gap + 180) % 360 - 180 => np.sign(gap) * min(abs(gap), 360 - abs(gap))
-        Across the seam the shorter way goes to the other side: add whole turns to the gap, or take them away.
+        Across the seam the shorter way goes to the other side. Add whole turns to the gap, or take them away.
     """),
     Exercise("11.3", shortest_stretch, points_of_an_object, cases={
         name: lambda rng, columns=columns: (np.array(columns), 1280) for name, columns in {
@@ -140,19 +140,19 @@ EXERCISES = [
         }.items()
     }, mistakes="""
         around[0] + width)) => around[-1]))
-        One gap is missing: the gap from the last point across the seam to the first.
+        One gap is missing. It goes from the last point across the seam to the first.
         ... => return columns.min(), columns.max()
-        Least and greatest column: across the seam that is the long way round, through the whole picture.
+        You take the least and the greatest column. Across the seam this is the long way round.
         return start, start + => start -= width * (start + width - gaps[largest] >= width); return start, start +
-        Your u_min is negative across the seam. Move both by a turn: 0 <= u_min < width.
+        Your u_min is negative across the seam. Move both by a turn, so that 0 <= u_min < width.
         start + width - gaps[largest] => (start + width - gaps[largest]) % width
-        The remainder of u_max turns the stretch inside out: across the seam it must pass the width.
+        The remainder of u_max turns the stretch inside out. Across the seam u_max must pass the width.
         ... => u = columns + width * ((np.ptp(columns) > width / 2) & (columns < width / 2)); return u.min(), u.max()
         Points that span half the picture need not lie across the seam. Look for the largest gap, all around.
         largest = gaps.argmax() => largest = gaps.argmax() if gaps.max() >= width / 2 else -1
-        The largest gap may be less than half a turn, and still be the one to leave out.
+        The largest gap may be less than half a turn. It is still the one to leave out.
         (largest + 1) % len(around) => largest
-        Your stretch begins where the largest gap begins. It begins where that gap ends.
+        Your stretch begins where the largest gap begins. It must begin where this gap ends.
         (largest + 1) % len(around) => largest and also gaps[largest] => (width - gaps[largest])
         That is the empty part, the largest gap. The points are in all the rest.
         return start, start + width => return start, width
@@ -166,12 +166,12 @@ EXERCISES = [
         (before, after) => (before[:2], after[:2])
         You use the first points only. Which turn do they leave open? Stack them all.
         (before, after) => (after, before)
-        Your signs are turned around. A camera that turns left sees everything move to the right.
+        Your signs are wrong. A camera that turns left sees everything move to the right.
         ... => return 0.0, 0.0, np.mean(((after - before)[:, 0] / width * 360 + 180) % 360 - 180)
-        That is yaw alone, as if the axis stood upright. Look how a tilt moves points ahead, and at the left.
+        You compute yaw alone, as if the axis stood upright. Look how a tilt moves points ahead, and at the left.
         ... => right, down = ((after - before).T / width * 360 + 180) % 360 - 180; return 0.0, down.mean(), right.mean()
-        Rows are not pitch: a pitch lowers what is ahead and lifts what is behind, and the mean hides both.
+        Rows are not pitch. A pitch lowers what is ahead and lifts what is behind, and the mean hides both.
         np.degrees(w) => np.degrees(np.cross(then, first).mean(axis=0))
-        A mean of cross products is too small: no point shows a turn about its own direction. Solve the equations.
+        A mean of cross products is too small, because no point shows a turn about itself. Solve the equations.
     """),
 ]

@@ -20,8 +20,8 @@ from course_lib.spherical_stereo.recording import TrueObject
 
 def idea_figure(image_bgr: np.ndarray, points: dict[str, np.ndarray]) -> Figure:
     """The panorama and the sphere, with the same named points (edge coordinates) on both."""
-    figure, (flat, ball) = new_figure(1, 2, size=(9.6, 3.5))
-    flat.get_gridspec().set_width_ratios([2, 1])
+    figure, (flat, ball) = new_figure(1, 2, size=(9.6, 4.3))
+    flat.get_gridspec().set_width_ratios([1.55, 1])
     panorama(flat, image_bgr, "Equirectangular image")
     sphere = DrawnSphere(ball, image_bgr)
     for index, (name, uv) in enumerate(points.items()):
@@ -30,6 +30,8 @@ def idea_figure(image_bgr: np.ndarray, points: dict[str, np.ndarray]) -> Figure:
         flat.plot(*uv, **style, label=name, clip_on=False)
         ball.plot(x, y, **style)
         ball.plot([0, x], [0, y], color=style["color"], linewidth=1.2)
+    ball.set(xlim=(-1.2, 1.2), ylim=(-1.2, 1.3))
+    ball.set_axis_off()
     figure.legend(*flat.get_legend_handles_labels(), loc="outside lower center", ncols=len(points), frameon=False)
     alt = "Left, an equirectangular image of a room; right, the same picture inside a sphere. Four points lie on both."
     return described(figure, alt)
@@ -48,7 +50,7 @@ def views_figure(views: dict[str, np.ndarray]) -> Figure:
 
 def seam_figure(image_bgr: np.ndarray, thing: TrueObject, naive_u: float) -> Figure:
     """The object's true box on both sides of the seam, the mean of its columns, and its true centre."""
-    figure, axes = new_figure(size=(8.4, 3.5))
+    figure, axes = new_figure(size=(6.8, 4.3))
     width = image_bgr.shape[1]
     panorama(axes, image_bgr, "One sofa, its box across the seam, and two 'centres'")
     draw_box(axes, thing.visible_box, width, thing.label)

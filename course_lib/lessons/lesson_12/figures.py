@@ -62,7 +62,7 @@ def extended_axes(axes: Axes, image_bgr: np.ndarray, title: str) -> list[Artist]
 
 def idea_figure(image_bgr: np.ndarray, boxes: np.ndarray, labels: Sequence[str], counted: np.ndarray) -> Figure:
     """The extended panorama with every box that the network saw on it; thin and dotted where it does not count."""
-    figure, axes = new_figure(size=(8.6, 3.7))
+    figure, axes = new_figure(size=(9.0, 4.2))
     extended_axes(axes, image_bgr, "What the network sees on the extended image (dashed: the range that counts)")
     for box, label, counts in zip(boxes, labels, counted, strict=True):
         colour, _ = class_style(label)
@@ -84,7 +84,7 @@ def training_figure(taught: measures.TrainingPicture, chosen: int) -> Figure:
     shared = np.minimum(size, shapes).prod(axis=1)
     best = np.argmax(shared / (size.prod() + shapes.prod(axis=1) - shared))
     cell, (height, width) = cells[best], taught.image.shape[:2]
-    figure, (whole, close) = new_figure(1, 2, size=(8.6, 3.4))
+    figure, (whole, close) = new_figure(1, 2, size=(9.6, 4.2))
     whole.get_gridspec().set_width_ratios([2.2, 1])
     panorama(whole, brighter(taught.image), "A picture of the training, and what is asked for")
     for box, name in zip(taught.boxes, taught.labels, strict=True):
@@ -119,7 +119,7 @@ def threshold_figure(scores: dict[float, measures.ThresholdScore], chosen: float
         bars = np.abs(np.array([wilson_percent(*count) for count in counts]).T / 100 - shares)
         axes.errorbar(np.add(list(scores), 0.006 * index), shares, bars, label=name, capsize=3, **line_style(index))
     axes.axvline(chosen, color=BLACK, linewidth=1.2, linestyle="--", label="chosen in training")
-    axes.set(title="A threshold is a bargain", xlabel="score threshold [-]", ylabel="share [-]", ylim=(0.4, 1.02))
+    axes.set(title="Precision and recall", xlabel="score threshold [-]", ylabel="share [-]", ylim=(0.4, 1.02))
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     alt = "Precision rises from 0.88 to 1 and recall falls from 0.96 to 0.63 as the score threshold goes from 0.1 to "
     return described(figure, alt + "0.9; bars show the 95 % intervals.")
@@ -227,7 +227,7 @@ def hue_panel() -> Panel:
     image = the_image()
     large = sorted(filter(measures.is_large, the_pair().upper_objects), key=lambda thing: thing.number)
     hidden = ["" if thing.visible_fraction > 0.9 else ", partly hidden" for thing in large]
-    things = {f"{thing.number}: {thing.label}{note}": thing for thing, note in zip(large, hidden, strict=True)}
+    things = {f"{thing.number + 1}: {thing.label}{note}": thing for thing, note in zip(large, hidden, strict=True)}
     figure, (close, histogram) = new_figure(1, 2, size=(9.4, 3.4))
     close.get_gridspec().set_width_ratios([1, 1.9])
     picture = close.imshow(np.zeros((CROP, CROP, 3), np.uint8), extent=(0, 1, 1, 0))

@@ -14,12 +14,11 @@ from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
 from course_lib.lessons.kit.panorama_features import scene
 from course_lib.lessons.lesson_13 import matching
 from course_lib.plots.figures import BLUE, SKY_BLUE, VERMILION, YELLOW, new_figure
-from course_lib.plots.panorama_drawing import draw_box, draw_numbers
+from course_lib.plots.panorama_drawing import draw_box
 from course_lib.plots.scenes import polydata
 from course_lib.spherical_stereo.matching.epipolar import EPIPOLAR_TOLERANCE
 
 TOP, BOTTOM = 260, 600  # rows [pixels]: where the furniture is on a panorama 640 high, and a number above it
-SHOWN = 25  # matched features of an object in a figure, at most: more of them would hide it
 SPHERES = (
     "Two grey spheres, one above the other, and a black point beside them. A yellow upright plane through all three "
     "cuts each sphere in a circle: bold on the point's side, dashed behind; a ray leads to the point."
@@ -34,20 +33,13 @@ def strip(axes: Axes, image_bgr: np.ndarray, title: str) -> None:
     axes.set(title=title, xlabel="column u [pixels]", ylabel="row v [pixels]", xlim=(0, width), ylim=(BOTTOM, TOP))
 
 
-def pair_figure(images: Sequence[np.ndarray], detections: Sequence[Sequence]) -> Figure:
-    """Return strips of both panoramas, upper first, with their boxes."""
-    figure, rows = new_figure(2, 1, size=(7.0, 4.1))
+def idea_figure(images: Sequence[np.ndarray], detections: Sequence[Sequence], columns: Sequence[float]) -> Figure:
+    """Return strips of both panoramas, upper first, with their boxes and vertical lines at these columns [pixels]."""
+    figure, rows = new_figure(2, 1, size=(8.4, 5.6))
     for axes, image, found, side in zip(rows, images, detections, ("Upper", "Lower"), strict=True):
         strip(axes, image, f"{side} camera")
         for one in found:
             draw_box(axes, one.box, image.shape[1], one.label)
-    return figure
-
-
-def idea_figure(images: Sequence[np.ndarray], detections: Sequence[Sequence], columns: Sequence[float]) -> Figure:
-    """Return strips of both panoramas with vertical lines through both at these columns [pixels]."""
-    figure = pair_figure(images, detections)
-    for axes in figure.axes:
         for column in columns:
             axes.axvline(column, color="white", linewidth=2.6)
             axes.axvline(column, color=BLUE, linewidth=1.4)
@@ -55,20 +47,6 @@ def idea_figure(images: Sequence[np.ndarray], detections: Sequence[Sequence], co
     return described(
         figure, alt + "it meets the same chair in both, which stands a little higher in the lower picture."
     )
-
-
-def matched_figure(images: Sequence[np.ndarray], detections: Sequence[Sequence], matches: Sequence) -> Figure:
-    """Return strips of both panoramas with the matched objects, one number a pair, and some matched features."""
-    sides = ("upper", "lower")
-    chosen = [[found[getattr(m, side)] for m in matches] for found, side in zip(detections, sides, strict=True)]
-    figure = pair_figure(images, chosen)
-    for axes, image, found, side in zip(figure.axes, images, chosen, sides, strict=True):
-        draw_numbers(axes, [one.box for one in found], [one.label for one in found], image.shape[1])
-        for match in matches:
-            points = getattr(match, f"keypoints_{side}")[:: -(-match.n_matches // SHOWN)]
-            axes.plot(points[:, 0] % image.shape[1], points[:, 1], ".", color=YELLOW, markersize=2.5)
-    alt = "Both strips with the paired objects: the same number on the same object above and below, yellow dots where "
-    return described(figure, alt + "some of the features matched.")
 
 
 def counts_figure(counts: np.ndarray, upper_names: Sequence[str], lower_names: Sequence[str]) -> Figure:

@@ -132,10 +132,11 @@ def ellipse_figure(place, covariance: np.ndarray, samples: np.ndarray, ways: np.
     ways: `(2, 2)`, the axes' unit vectors in its columns, sigmas: `(2,)` metres along them, the smaller first.
     """
     figure, (room, large) = new_figure(1, 2, size=(9.4, 4.4))
-    room.plot([0, 1.25 * place[0]], [0, 1.25 * place[1]], color="0.6", linewidth=0.9, label="ray")
+    room.plot([0, 1.25 * place[1]], [0, 1.25 * place[0]], color="0.6", linewidth=0.9, label="ray")
     room.plot(0, 0, "o", color="black", label="rig")
-    room.plot(*ellipse(covariance[:2, :2], place[:2]).T, color=BLUE, linewidth=1.6, label="two sigma")
-    room.set(title="From above", xlabel="x, forward [m]", ylabel="y, left [m]", aspect="equal")
+    room.plot(*ellipse(covariance[:2, :2], place[:2]).T[::-1], color=BLUE, linewidth=1.6, label="two sigma")
+    room.set(title="From above, forward is up", xlabel="y, left [m]", ylabel="x, forward [m]", aspect="equal")
+    room.invert_xaxis()
     room.legend(fontsize=8)
     ray, left = place[:2], np.array([-place[1], place[0]])
     turn = np.stack([way * np.sign(way @ side) for way, side in zip(ways.T[::-1], (ray, left), strict=True)])
@@ -162,8 +163,8 @@ def triangulation_panel() -> Panel:
     figure, (side, above) = new_figure(1, 2, size=(9.8, 3.9))
     side.set(title="From the side: rays, one sigma wide", xlabel="horizontal range [m]", ylabel="height [m]")
     side.set(xlim=(-0.3, 10), ylim=(-0.1, 3.1))
-    above.set(title="From above: where the object may be", xlabel="x, forward [m]", ylabel="y, left [m]")
-    above.set(xlim=(-0.5, 10), ylim=(-4.2, 4.2))
+    above.set(title="From above: where the object may be", xlabel="y, left [m]", ylabel="x, forward [m]")
+    above.set(xlim=(4.2, -4.2), ylim=(-0.5, 10))
     wedges = [side.add_patch(Polygon(np.zeros((3, 2)), color=colour, alpha=0.35)) for colour in (BLUE, ORANGE)]
     (cameras,) = side.plot([], [], "o", color="black", markersize=6)
     clouds = [axes.plot([], [], ".", color="0.45", markersize=2)[0] for axes in (side, above)]
@@ -188,11 +189,11 @@ def triangulation_panel() -> Panel:
             wedge.set_xy([(0, height), *((12 * np.cos(a), height + 12 * np.sin(a)) for a in e)])
         cameras.set_data([0, 0], [camera, camera - baseline])
         clouds[0].set_data(np.hypot(*cloud[:, :2].T), cloud[:, 2] + camera)
-        clouds[1].set_data(*cloud[:, :2].T)
+        clouds[1].set_data(cloud[:, 1], cloud[:, 0])
         objects[0].set_data([rho], [z])
-        objects[1].set_data([x], [y])
-        ray.set_data([0, x], [0, y])
-        outline.set_data(*ellipse(covariance[:2, :2], np.array([x, y])).T)
+        objects[1].set_data([y], [x])
+        ray.set_data([0, y], [0, x])
+        outline.set_data(*ellipse(covariance[:2, :2], np.array([x, y])).T[::-1])
         parallax = np.diff([np.arcsin(v[2]) for v in (upper, lower)])[0] / PIXEL
         place = f"d {d:.2f} m, horizontal range {rho:.2f} m, parallax e_l - e_u {parallax:.1f} pixels"
         lost = f"no distance (parallel or diverging): {(outcomes != triangulation.OK).mean():.0%} of the measurements"

@@ -41,13 +41,13 @@ def weights_panel() -> Panel:
     heat.grid(False)
     heat.set_xticks(range(n), names, rotation=90, fontsize=7)
     heat.set_yticks(range(n), names, fontsize=7)
-    heat.set(title="Penalty of every combination", xlabel="landmark of the map [-]", ylabel="observed object [-]")
+    heat.set(title="Penalty of every combination", xlabel="landmark of the map", ylabel="observed object")
     figure.colorbar(image, ax=heat, label="penalty [-]", shrink=0.9).set_ticks([0, 0.1, 0.5, 1, 2, 4, 6])
     done = heat.add_collection(LineCollection([], colors="white", linewidths=0.7, alpha=0.8))
     cells = heat.plot([], [], "o", mfc="none", mec="white", markersize=7, mew=1.8)
     cells += heat.plot([], [], "X", color=figures.VERMILION, mec="white", markersize=9)
     map_axes(plan, room, "Object (x) to its landmark")
-    for j, place in enumerate(room.positions):
+    for j, place in enumerate(room.positions, start=1):
         plan.annotate(str(j), place, (5, 4), textcoords="offset points", fontsize=7)
     plan.plot(*room.centroid, "+", color=figures.BLACK, markersize=13, markeredgewidth=1.8)
     (places,) = plan.plot([], [], "x", color="0.25", markersize=6, markeredgewidth=1.4)
