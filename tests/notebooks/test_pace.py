@@ -46,7 +46,7 @@ def test_the_core_path_needs_no_name_that_a_part_more_defines(lesson):
         known |= {
             a.asname or a.name for n in ast.walk(tree) if isinstance(n, ast.Import | ast.ImportFrom) for a in n.names
         }
-        known |= {n.name for n in ast.walk(tree) if isinstance(n, ast.FunctionDef | ast.ClassDef)}
+        known |= {n.name for n in ast.walk(tree) if isinstance(n, ast.FunctionDef | ast.ClassDef | ast.ExceptHandler)}
         known |= {n.arg for n in ast.walk(tree) if isinstance(n, ast.arg)} | names(cell, ast.Store)
         assert names(cell, ast.Load) <= known, cell.id
 

@@ -1,5 +1,7 @@
 """Figures of lesson 16: centred points, the residual over the heading, the spread over the number of points."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -12,10 +14,12 @@ from course_lib.plots import figures
 def centred_figure(points: Matched) -> Figure:
     """Draw the measured points, the landmarks, and both about their centroids, where only a turn is left."""
     figure, (body, world, both) = figures.new_figure(1, 3, size=(10.4, 3.7))
-    for index, axes in ((0, body), (1, world), (0, both), (1, both)):
-        draw_numbered(axes, points[index] - (points[index].mean(axis=0) if axes is both else 0), index)
-    body.plot(0, 0, marker=(3, 0, -90), color=figures.BLACK, markersize=10)
-    body.set(title="Measured, body frame", xlabel="forward x [m]", ylabel="left y [m]", aspect="equal")
+    draw_numbered(body, points.source[:, ::-1] * [-1, 1], 0, points.landmarks)
+    draw_numbered(world, points.target, 1, points.landmarks)
+    for index in (0, 1):
+        draw_numbered(both, points[index] - points[index].mean(axis=0), index, points.landmarks)
+    body.plot(0, 0, marker=(3, 0, 0), color=figures.BLACK, markersize=10)
+    body.set(title="Measured, body frame", xlabel="to the right, -y [m]", ylabel="forward, x [m]", aspect="equal")
     world.set(title="Landmarks, world frame", xlabel="x [m]", ylabel="y [m]", aspect="equal")
     both.set(title="Both about their centroids", xlabel="x - centroid [m]", ylabel="y - centroid [m]", aspect="equal")
     figure.legend(*both.get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
@@ -26,27 +30,27 @@ def centred_figure(points: Matched) -> Figure:
     )
 
 
-def draw_numbered(axes: Axes, points: np.ndarray, index: int) -> None:
+def draw_numbered(axes: Axes, points: np.ndarray, index: int, numbers: Sequence[int]) -> None:
     style = figures.line_style(index) | {"linestyle": "none", "markersize": 5}
     axes.plot(*points.T, **style, label=("measured", "landmark")[index])
     axes.plot(*points.mean(axis=0), "+", color=style["color"], markersize=14, markeredgewidth=2)
-    for k, place in enumerate(points, start=1):
-        axes.annotate(str(k), place, (4, 3), textcoords="offset points", fontsize=7, color=style["color"])
+    for number, place in zip(numbers, points, strict=True):
+        axes.annotate(str(number), place, (4, 3), textcoords="offset points", fontsize=7, color=style["color"])
 
 
 def heading_figure(curves: dict[str, tuple[np.ndarray, np.ndarray]]) -> Figure:
-    """Draw the residual over the heading for several sets of points (source, target)."""
+    """Draw the mean squared residual over the heading for several sets of points (source, target)."""
     figure, axes = figures.new_figure(size=(7.4, 3.0))
     degrees = np.linspace(-180, 180, 361)
     for index, (name, points) in enumerate(curves.items()):
         style = figures.line_style(index) | {"markevery": 30}
-        axes.plot(degrees, residual_over_heading(*points, np.deg2rad(degrees)), **style, label=name)
-    axes.set(title="What is left over, for every heading", xlabel="heading [degrees]", ylabel="RMS residual [m]")
+        axes.plot(degrees, residual_over_heading(*points, np.deg2rad(degrees)) ** 2, **style, label=name)
+    axes.set(title="What is left over, for every heading", xlabel="heading [degrees]", ylabel="mean square [m$^2$]")
     axes.set(ylim=(0, None), xticks=np.arange(-180, 181, 60))
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     return described(
         figure,
-        "Residual over heading: two smooth valleys, the deeper one for two pairs, both lowest near minus 90 degrees.",
+        "Mean square over heading: two cosines, the flatter one for two pairs, both lowest near minus 90 degrees.",
     )
 
 

@@ -27,8 +27,8 @@ def fit_panel() -> Panel:
     figure, (body, world, curve) = figures.new_figure(1, 3, size=(10.8, 3.9))
     (measured,) = body.plot([], [], "x", color=figures.BLUE, markersize=8, markeredgewidth=2)
     (mover,) = body.plot([], [], "o", mfc="none", color=figures.VERMILION, markersize=15, markeredgewidth=1.6)
-    body.plot(0, 0, marker=(3, 0, -90), color=figures.BLACK, markersize=11)
-    body.set(title="Measured, body frame", xlabel="forward x [m]", ylabel="left y [m]", aspect="equal")
+    body.plot(0, 0, marker=(3, 0, 0), color=figures.BLACK, markersize=11)
+    body.set(title="Measured, body frame", xlabel="to the right, -y [m]", ylabel="forward, x [m]", aspect="equal")
     body.set(xlim=(-6.5, 6.5), ylim=(-6.5, 6.5))
     (marks,) = world.plot([], [], "s", mfc="none", color=figures.ORANGE, markersize=9, mew=2, label="landmark")
     (landed,) = world.plot([], [], "x", color=figures.BLUE, markersize=8, markeredgewidth=2, label="measured, fitted")
@@ -55,10 +55,11 @@ def fit_panel() -> Panel:
         source += noise * np.random.default_rng(int(seed)).standard_normal(source.shape)
         k = min(int(moved), n) - 1
         source[k] += [forward, left]
-        measured.set_data(*source.T)
-        mover.set_data(*source[[k]].T)
+        drawn = source[:, ::-1] * [-1, 1]  # forward is up
+        measured.set_data(*drawn.T)
+        mover.set_data(*drawn[[k]].T)
         marks.set_data(*target.T)
-        for texts, places in zip(numbers, (source, target), strict=True):
+        for texts, places in zip(numbers, (drawn, target), strict=True):
             for text, (x, y) in zip(texts, [*places, *[places[-1]] * (6 - n)], strict=True):
                 text.set_position((x + 0.25, y + 0.2))
         truth.set_data(*heading_line(pose))

@@ -21,7 +21,7 @@ from course_lib.spherical_stereo.localizer import SemanticLocalizer
 def places_figure() -> Figure:
     """Draw the room from above: the map's objects, and table 1's places with their headings."""
     figure, axes = figures.new_figure(size=(7.2, 5.2))
-    map_axes(axes, room_map(), "The room of the experiment: the map, and table 1's ten places")
+    map_axes(axes, room_map(), "The map, and the ten places of table 1")
     for p in MEASUREMENT_PLACES:
         for heading in np.radians(p.headings_deg):
             draw_pose(axes, p.x, p.y, float(heading), figures.BLACK)
@@ -43,7 +43,7 @@ def outcomes_figure(runs: Sequence[StoredRoom]) -> Figure:
         axes.plot(column, row, linestyle="none", marker=marker, color=colour, markersize=9, label=kind)
     axes.set_xticks(range(len(names)), names, rotation=90, fontsize=8)
     axes.set_yticks(range(len(rows)), [f"experiment {e}, seed {run.seed}" for e, run in rows], fontsize=8)
-    axes.set(title="Which poses fail", xlabel="pose: place of table 1 and heading a or b [-]", ylabel="run [-]")
+    axes.set(title="Which poses fail", xlabel="pose (place of table 1, heading a or b)")
     axes.set(ylim=(len(rows) - 0.5, -0.5))
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     alt = "A grid of runs and poses: dots where the pose was correct, crosses where it was incorrect."
@@ -68,9 +68,9 @@ def rates_figure(shares: Sequence[float], percent: dict[str, list[float]], error
 
 CONTROLS = [
     Choice("experiment", "experiment", ("1", "2"), "1"),
-    Slider("pose", "pose (of 20) [-]", 1, 20, 3, 1),
-    Slider("missed", "objects hidden [-]", 0, 12, 2, 1),  # 11 to 14 are measured in a pose
-    Slider("choice", "which ones (seed) [-]", 1, 30, 5, 1),
+    Slider("pose", "pose (of 20)", 1, 20, 3, 1),
+    Slider("missed", "objects hidden", 0, 12, 2, 1),  # 11 to 14 are measured in a pose
+    Slider("choice", "which ones (seed)", 1, 30, 5, 1),
 ]
 
 
@@ -78,7 +78,7 @@ def judge_panel() -> Panel:
     """Show one pose from exact boxes: hide some of its objects, and see its pairs, its pose and its kind change."""
     room, localizer = room_map(), SemanticLocalizer(room_recording(1).rig, room_map(), reject_implausible=False)
     figure, axes = figures.new_figure(size=(7.6, 5.0))
-    map_axes(axes, room, "True and estimated pose; lines: what each object was taken for")
+    map_axes(axes, room, "Lines show what each object was taken for")
     looks = ((figures.BLACK, "true pose"), (ESTIMATE, "estimated pose"))
     style = {"marker": "o", "markersize": 8, "linewidth": 2.2, "markevery": [0]}
     poses = [axes.plot([], [], color=colour, label=name, **style)[0] for colour, name in looks]
@@ -108,11 +108,11 @@ def judge_panel() -> Panel:
         measured.set_data(*np.reshape([place for _, place, _ in pairs], (-1, 2)).T)
         rings.set_data(*room.positions[shown[hidden]].T)
         text = f"{kind}; {len(seen)} of {total} objects seen"
-        more = "two pairs at least are needed for a pose"
+        more = "a pose needs at least two pairs"
         if kind != UNABLE:
             text += f", {sum(not right for right, *_ in pairs)} wrong pairs"
-            mended = "every pair right" if is_matched_rightly(one, "true centroid") else "wrong pairs still"
-            more = f"dx {dx:.1f} m, dy {dy:.1f} m, dtheta {dtheta:.0f} degrees; with a true centroid: {mended}"
+            mended = "every pair is right" if is_matched_rightly(one, "true centroid") else "wrong pairs remain"
+            more = f"dx {dx:.1f} m, dy {dy:.1f} m, dtheta {dtheta:.0f} degrees; with a true centroid {mended}"
         alt = f"Pose {result.pair.name} of experiment {experiment} on the map, {len(hidden)} objects hidden. {text}"
         return Drawing(live.png(), alt, f"{result.pair.name}: {text}\n{more}")
 

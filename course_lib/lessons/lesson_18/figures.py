@@ -24,6 +24,7 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 SIGMAS = 2.0
 """Standard deviations at which every ellipse of this lesson is drawn, but for that of a pose, which has three."""
+DOUBTED = "The room", "Two equal ends", "The same with a plant"
 RING = {"marker": "o", "mfc": "none", "mec": figures.BLACK, "markersize": 11}
 
 
@@ -43,7 +44,8 @@ def laid_on_the_map(scene: Scene, pose: Sequence[float]) -> tuple[np.ndarray, np
 def draw_matches(axes: Axes, title: str, scene: MatchingScene, pose: Sequence, pairs: Sequence, bold: Sequence = ()):
     """Draw the map, the observations as a pose lays them on it, and a line from each to its landmark.
 
-    Green: the right landmark; vermilion and dashed: a wrong one. bold: observations that the pose was made of.
+    A line to the right landmark is green, and to a wrong one vermilion and dashed. bold: observations that the pose was
+    made of.
     """
     map_axes(axes, room_map(), title)
     places, spread = laid_on_the_map(scene_of(scene.observations, room_map()), pose)
@@ -84,30 +86,17 @@ MATCHES = {
 }
 
 
-def side_by_side(scene: MatchingScene, titles: Sequence[str], found: Sequence[tuple], alt: str) -> Figure:
-    """Draw two poses of one scene. found: of each the pose, pairs, and perhaps the observations it was made of."""
-    figure, axes = figures.new_figure(1, 2, size=(10.0, 5.4))
-    for one, title, what in zip(axes, titles, found, strict=True):
-        draw_matches(one, title, scene, *what)
-    legend_below(figure, axes[-1], MATCHES, 4)
-    figure.get_layout_engine().set(h_pad=0.1)  # else the titles touch the edge
-    return described(figure, alt)
-
-
 def two_ways_figure(scene: MatchingScene, *found: tuple) -> Figure:
     """Two plans of the room. Left: matched by colour, each sofa is taken for another one and the pose is beside the
     true one. Right: from the pose of two right matches every other object lies near its own landmark.
     """
+    figure, axes = figures.new_figure(1, 2, size=(10.0, 5.4))
     titles = "By class and colour first, then the pose", "Two matches (thick) make a pose: see the others"
-    return side_by_side(scene, titles, found, two_ways_figure.__doc__)
-
-
-def best_two_figure(scene: MatchingScene, *best_two: PoseHypothesis) -> Figure:
-    """Left, the best pose: every object lies within its ellipse near its landmark, ellipses point at the robot. Right,
-    the runner-up, a metre and more away: half of the objects have no landmark near them.
-    """
-    found = [(one.pose, one.pairs) for one in best_two]
-    return side_by_side(scene, ("The best pose", "The runner-up"), found, best_two_figure.__doc__)
+    for one, title, what in zip(axes, titles, found, strict=True):
+        draw_matches(one, title, scene, *what)
+    legend_below(figure, axes[-1], MATCHES, 4)
+    figure.get_layout_engine().set(h_pad=0.1)  # else the titles touch the edge
+    return described(figure, two_ways_figure.__doc__)
 
 
 def hypotheses_figure(poses: np.ndarray, true_pose: Sequence[float]) -> Figure:
@@ -153,28 +142,16 @@ def risk_figure(curves: dict[str, dict[str, list[float]]]) -> Figure:
     return described(figure, risk_figure.__doc__)
 
 
-def ambiguities(rooms: Sequence[SemanticMap], found: Sequence[AmbiguityMap], titles: Sequence[str], alt: str) -> Figure:
-    """Draw ambiguity maps: dark where the right pose is not sure, dashed lines between objects confused."""
-    figure, axes = figures.new_figure(1, len(found), size=(10.4, 4.7))
-    for one, semantic_map, ambiguity, title in zip(axes, rooms, found, titles, strict=True):
+def doubt_figure(rooms: Sequence[SemanticMap], found: Sequence[AmbiguityMap]) -> Figure:
+    """Three plans in squares. Nearly all squares of the room are light. In the symmetric room all are dark and equal
+    objects are joined by dashed lines; with a plant in it most are light, and the lines are faint.
+    """
+    figure, axes = figures.new_figure(1, 3, size=(10.8, 4.1))
+    for one, semantic_map, ambiguity, title in zip(axes, rooms, found, DOUBTED, strict=True):
         squares = draw_ambiguity(one, semantic_map, ambiguity, title)
-    figure.colorbar(squares, ax=axes, label="doubt about the right pose [-], 0: sure", shrink=0.8)
-    legend_below(figure, axes[-1], {})
-    return described(figure, alt)
-
-
-def matchers_figure(found: Sequence[AmbiguityMap]) -> Figure:
-    """Two plans of the room in squares. For the greedy matcher most squares are dark, and the sofas are joined by thick
-    dashed lines; for the consistent matcher nearly all squares are light.
-    """
-    return ambiguities([room_map()] * 2, found, ["Greedy", "Consistent"], matchers_figure.__doc__)
-
-
-def halls_figure(rooms: Sequence[SemanticMap], found: Sequence[AmbiguityMap]) -> Figure:
-    """Two plans in squares: without the plant all squares are half dark and equal objects are joined by dashed lines;
-    with it they are light, and the lines are faint.
-    """
-    return ambiguities(rooms, found, ["Two equal ends", "The same with a plant"], halls_figure.__doc__)
+    figure.colorbar(squares, ax=axes, label="doubt [-]", shrink=0.8)
+    legend_below(figure, axes[0], {})
+    return described(figure, doubt_figure.__doc__)
 
 
 def beliefs_figure(semantic_map: SemanticMap, beliefs: Sequence[Sequence[tuple]], true_poses: np.ndarray) -> Figure:

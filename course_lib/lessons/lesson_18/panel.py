@@ -87,7 +87,7 @@ def hypotheses_panel() -> Panel:
     colours = [figures.BLUE] * len(TERMS) + [figures.BLACK]
     bars = terms.add_collection(LineCollection([], linewidths=9, capstyle="butt", colors=colours))
     terms.axvline(0, color="0.3", linewidth=0.8)
-    terms.set(title="What its score adds up from", xlabel="score [nats]", ylabel="evidence [-]")
+    terms.set(title="The parts of its score", xlabel="score [nats]", ylabel="evidence")
     terms.set(ylim=(len(names) - 0.4, -0.6), xlim=(MIN_NATS, MAX_NATS), yticks=range(len(names)), yticklabels=names)
     dots = residuals.plot([], [], "o", **right_style, markersize=6, label="right")
     dots += residuals.plot([], [], "X", **wrong_style, markersize=8, label="wrong")
@@ -126,7 +126,7 @@ def hypotheses_panel() -> Panel:
             f"{len(right)} of {len(seen)} objects matched, {int((~right).sum())} of them wrongly\n"
             f"score {chosen.score:.1f} = {sum_of_terms}\n"
             f'share {chosen.share:.1%}, "none of these" {nothing:.1%}; '
-            f"confidence of pose 1: {confidence_of(poses[0]):.2f}, 0.80 is asked for"
+            f"confidence of pose 1 is {confidence_of(poses[0]):.2f}, and 0.80 is needed"
         )
         alt = (
             f"The map from above with {len(seen)} objects as one pose lays them on it, lines to the landmarks they are "

@@ -42,7 +42,7 @@ def reading_panel(given: Recording | None = None) -> Panel:
     live = LiveFigure(figure, drawn)
     controls = [
         Choice("reading", "how the files are read", tuple(READINGS), next(iter(READINGS))),
-        Slider("frame", "frame [-]", 0, max(1, last), 0, 1),
+        Slider("frame", "frame", 0, max(1, last), 0, 1),
         Slider("shift", "camera moved to the right [m]", -0.3, 0.3, 0.0, 0.01),
     ]
 
