@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.beyond.being_lost import MIN_PIXELS
-from course_lib.beyond.six_dof.covariance import PREDICTED, SCALE, fused, information, with_rivals
+from course_lib.beyond.six_dof.covariance import RIVAL_SCALE, SCALE, fused, information, with_rivals
 from course_lib.beyond.six_dof.poses import distinct, local, retract
 from course_lib.beyond.six_dof.prediction import MeasuredMotion, Rival
 from course_lib.beyond.six_dof.refinement import NormalEquations, solve, surface_normals
@@ -50,14 +50,15 @@ class View(NamedTuple):
 
     @classmethod
     def of(cls, depth: np.ndarray, camera: DepthCamera, pixels: int) -> "View":
-        """Return the view of every k-th row and column of a depth image `(H, W)`, so that about `pixels` are left.
+        """Return the view of every k-th row and column of a depth image `(H, W)`, so that about `pixels` measure.
 
         Their rays stay what they were: u / k, v / k. An image of another size, in which a pixel has the depth of its
         neighbour's ray, has the same errors at the same pixels wherever the camera is: it would stand still.
         """
-        k = max(1, round(np.sqrt(depth.size / pixels)))
         with np.errstate(invalid="ignore"):
-            thinned = np.where((depth > camera.near) & (depth < camera.far), depth, np.nan)[::k, ::k]
+            measured = np.where((depth > camera.near) & (depth < camera.far), depth, np.nan)
+        k = max(1, round(np.sqrt(np.isfinite(measured).sum() / pixels)))
+        thinned = measured[::k, ::k]
         (height, width), lens = thinned.shape, [value / k for value in (camera.fx, camera.fy, camera.cx, camera.cy)]
         camera = DepthCamera(width, height, *lens, camera.near, camera.far)
         (points,), (normals,) = surface_normals(thinned[None].astype(np.float64), camera)
@@ -151,7 +152,7 @@ def image_motion(
     before, now: a coarse and a finer view each. guess: motion `(6,)` to start from, beside `STEPS` and `TURNS`; along
     what the images do not show it is kept, with its standard deviations `spread` `(6,)`. The result is believed if
     enough pixels fall on the image before and agree with it. Another motion that explains the images nearly as well
-    widens the covariance (`with_rivals`).
+    widens the covariance (`with_rivals`), if it does not lie far from the guess.
     """
     starts = np.concatenate([np.repeat(STEPS, len(TURNS), axis=0), np.tile(TURNS, (len(STEPS), 1))], axis=1)
     predicted = retract(np.eye(4), guess)
@@ -164,19 +165,23 @@ def image_motion(
         for scale in scales:
             poses = retract(poses, solve(compiled_motion_equations(old, points, poses, scale)[0]))
         far = np.sum((local(predicted, poses) / spread) ** 2, axis=1)
-        scores, shares, _ = _scores(old, points, poses)
-        scores = scores - EXPECTED * np.minimum(far, FARTHEST) / 2 - (shares < MIN_PAIRED)
-        kept = distinct(poses, scores, count, APART)
-        poses, scores = poses[kept], scores[kept]
+        raw, shares, _ = _scores(old, points, poses)
+        raw -= shares < MIN_PAIRED
+        kept = distinct(poses, raw - EXPECTED * np.minimum(far, FARTHEST) / 2, count, APART)
+        poses, scores, far = poses[kept], raw[kept], far[kept]
     has_partner, n, r = paired(old, points, poses[0])
     shown = information(points[has_partner], n, new.normals[has_normal][has_partner], r)
-    covariance, gain = fused(np.diag((PREDICTED * spread) ** 2), PIXELS * shown)
+    covariance, gain = fused(np.diag(spread**2), PIXELS * shown)
     covariance += np.diag(np.repeat(FLOOR, 3) ** 2)
     fused_pose = retract(predicted, gain @ local(predicted, poses[0]))
     score, share, agreeing = (float(x[0]) for x in _scores(old, points, fused_pose[None]))
-    if share < MIN_PAIRED or agreeing < MIN_AGREEING or score < scores[0] - CLEARLY:
+    if score < scores[0] - CLEARLY:  # the images show more than their linear equations do
+        fused_pose = poses[0]
+        _, share, agreeing = (float(x[0]) for x in _scores(old, points, fused_pose[None]))
+    if share < MIN_PAIRED or agreeing < MIN_AGREEING:
         return None
-    rivals = [Rival(pose, float(rival - scores[0])) for pose, rival in zip(poses[1:], scores[1:], strict=True)]
+    evidence = scores - RIVAL_SCALE * np.minimum(far, FARTHEST) / 2
+    rivals = [Rival(pose, min(float(e - evidence[0]), 0.0)) for pose, e in zip(poses[1:], evidence[1:], strict=True)]
     return MeasuredMotion(local(np.eye(4), fused_pose), with_rivals(covariance, fused_pose, rivals))
 
 

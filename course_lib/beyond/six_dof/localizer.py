@@ -238,11 +238,13 @@ class AnnealedLocalizer:
         if image_says == "tracked" or self._confirmed(found, spread, measured):
             pose = retract(predicted, gain @ apart)
             surprising = measured is not None and not is_near(apart, covariance)
-            if surprising or fine.score(fine.draw(pose[None]))[0] < found.score - SEEN:
+            lost_score = float(fine.score(fine.draw(pose[None]))[0]) - found.score
+            others = [*found.rivals, Rival(predicted, 0.0)] if surprising else list(found.rivals)
+            if surprising or lost_score < -SEEN:
+                others.append(Rival(pose, lost_score))
                 pose = found.pose
             sees_all = np.linalg.matrix_rank(information, hermitian=True) == 6
             prediction.found(pose, bool(sees_all), found.rivals)
-            others = [*found.rivals, Rival(predicted, 0.0)] if surprising else found.rivals
             self._covariance = with_rivals(narrowed, pose, others)
             return found._replace(pose=pose), image_says
         if measured is not None and not fits and is_known(covariance):
