@@ -17,12 +17,12 @@ from course_lib.files import atomic_write
 from course_lib.lessons.kit.compression import small_png
 from course_lib.paths import REPOSITORY, foundation_paths, notebook_paths
 
-# Lesson -> the cell whose picture we use. Of a lesson that is not listed, we use the first picture.
+# Lesson -> the cell whose picture we use. Of a lesson that is not listed, we use the first one made of pixels.
 CHOSEN = {
-    "00": "00-second-picture", "01": "01-order-picture", "03": "03-tiles-picture", "07": "07-idea-comb",
+    "00": "00-second-picture", "01": "01-order-picture", "03": "03-tiles-picture", "07": "07-panel",
     "08": "08-figure-5", "09": "09-same-budget-picture", "10": "10-narrowing-scores-picture",
-    "14": "14-places-picture", "15": "15-panel", "19": "19-stages",
-    "F1": "F1-measure-sizes", "F3": "F3-joins",
+    "14": "14-ellipse", "15": "15-panel", "19": "19-stages",
+    "F1": "F1-beliefs", "F3": "F3-joins",
 }  # fmt: skip
 MAX_SIZE = (420, 230)  # (width, height) in pixels
 MAX_BYTES = 30_000
