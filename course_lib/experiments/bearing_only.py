@@ -136,8 +136,8 @@ def bearing_table(found: dict[str, dict]) -> str:
     one = next(iter(found.values()))
     lines = [
         f"Direction and distance, from images: {one['poses']} poses, intervals (95 %) over {one['units']} units",
-        f"{'':42}{'no pose':>8}{'median (90 %) of':>32}{'difference from the paper in':>46}",
-        f"{'':42}{'[%]':>8}{'position [m]':>17}{'heading [deg]':>15}{'position [m]':>24}{'heading [deg]':>22}",
+        f"{'':42}{'no pose':>8}{'median (90 %) of':>32}{'difference from the paper in':>51}",
+        f"{'':42}{'[%]':>8}{'position [m]':>17}{'heading [deg]':>15}{'position [m]':>26}{'heading [deg]':>25}",
     ]
     for name, table in found.items():
         lines.append(f"Pairs {name.replace('_', ' ')} ({table['poses']} poses)")
@@ -146,5 +146,5 @@ def bearing_table(found: dict[str, dict]) -> str:
             sizes = [f"{text[f'median_{u}']} ({text[f'ninety_percent_{u}']})" for u in ("m", "deg")]
             ends = [[text[f"{end}_less_paper_{u}"] for end in ("median", "low", "high")] for u in ("m", "deg")]
             told = ["" if fit == PAPER else f"{middle} ({low} to {high})" for middle, low, high in ends]
-            lines.append("  {:40}{:>8}{:>17}{:>15}{:>24}{:>22}".format(fit, text["no_pose_percent"], *sizes, *told))
+            lines.append("  {:40}{:>8}{:>17}{:>15}{:>26}{:>25}".format(fit, text["no_pose_percent"], *sizes, *told))
     return "\n".join(lines)

@@ -97,18 +97,7 @@ def test_the_rooms_table_has_the_papers_row_ours_and_their_intervals(made, tmp_p
 
 
 def test_asked_for_direction_alone_the_rooms_table_tells_it_beside_the_papers_fit(made, tmp_path, printed, told):
-    words = [
-        "demo",
-        "rooms",
-        "--seeds",
-        "10001-10002",
-        "--processes",
-        "1",
-        "--association",
-        "greedy",
-        "--out",
-        tmp_path,
-    ]
+    words = f"demo rooms --seeds 10001-10002 --processes 1 --association greedy --out {tmp_path}".split()
     text, found = printed(*words, "--bearing-only"), told(*words, "--bearing-only")["bearing_only"]
     assert "Direction and distance, from images: 8 poses, intervals (95 %) over 2 units" in text
     assert text.count("  direction alone ") == len(found) == 3
