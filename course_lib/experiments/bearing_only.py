@@ -18,8 +18,7 @@ from course_lib.spherical_stereo.ranging.object_positions import Noise
 MIN_BEARINGS = 3  # A pose has three unknowns, and each direction gives one equation.
 MAX_SIGMA = 1.0  # Metres: a position that the directions tell less exactly is no answer (chosen beforehand).
 STEPS, CONVERGED, TINY = 100, 1e-9, 1e-12  # Damped Gauss-Newton: at most, metres and radians, against 0 / 0.
-PAPER = "the paper's fit"
-FITS = PAPER, "direction and distance, weighted_fit", "direction alone"
+FITS = ALONE, PAPER, WEIGHTED = "direction alone", "the paper's fit", "direction and distance, weighted_fit"
 FEW = 3, 5  # Pairs drawn from the true ones: what is distance worth where little is seen?
 DRAW_SEED = 0xBEA
 
@@ -86,23 +85,22 @@ def _gauss_newton(pose: np.ndarray, bearings: np.ndarray, landmarks: np.ndarray)
 def fit_errors(observations: list, landmarks: np.ndarray, true_pose: np.ndarray) -> list[tuple[float, float]]:
     """Return metres and degrees by which each of `FITS` is off; infinite if it gives no pose. landmarks: `(n, 2)`."""
     points = np.array([(one.x, one.y) for one in observations]).reshape(-1, 2)
-    poses = []
+    poses = [fit_bearings(np.arctan2(points[:, 1], points[:, 0]), landmarks)]
     for covariances in (None, np.array([one.covariance for one in observations]).reshape(-1, 2, 2)):
         try:
             poses.append(fit_rigid_2d(points, landmarks, covariances=covariances))
         except RigidFitError:
             poses.append(None)
-    poses.append(fit_bearings(np.arctan2(points[:, 1], points[:, 0]), landmarks))
     found = [pose_errors(pose, true_pose) for pose in poses]
     return [(np.inf, np.inf) if np.isnan(dx) else (float(np.hypot(dx, dy)), degrees) for dx, dy, degrees in found]
 
 
 def compared(poses: Iterable[tuple]) -> dict[str, dict]:
-    """Return errors and paired differences for the pairs as found, for the true ones, and for a few of the true ones.
+    """Return the errors, and what distance changes, for the pairs as found, the true pairs, and a few of the true ones.
 
     poses: (unit, Localization, true landmarks, true pose, the map's positions). A unit is drawn as a whole: a room, or
-    one pose at both heights. A difference is taken in each pose; its median in each unit; then their median and its
-    interval. A fit without a pose has an infinite error there, so that all fits are told of the same poses.
+    one pose at both heights. Change: the error less that of direction alone in each pose, its median in each unit, then
+    the median of these and its interval. A fit without a pose has an infinite error, so all fits have the same poses.
     """
     rng, errors = np.random.default_rng(DRAW_SEED), {}
     for unit, found, true_landmarks, true_pose, positions in poses:
@@ -125,26 +123,26 @@ def _summary(units: np.ndarray, errors: np.ndarray) -> dict:
         numbers = {"no_pose_percent": 100.0 * np.isinf(errors[:, k, 0]).mean()}
         for column, name in enumerate(("m", "deg")):
             middle, most = np.quantile(errors[:, k, column], (0.5, 0.9), method="higher")
-            change = {f"{end}_less_paper_{name}": x for end, x in median_interval(by_unit[:, k, column]).items()}
+            change = {f"{end}_change_{name}": x for end, x in median_interval(by_unit[:, k, column]).items()}
             numbers |= {f"median_{name}": middle, f"ninety_percent_{name}": most, **change}
         table[fit] = {key: float(x) if x is not None and np.isfinite(x) else None for key, x in numbers.items()}
     return table
 
 
 def bearing_table(found: dict[str, dict]) -> str:
-    """Return the table of `compared`: medians, 90 % of the poses, and paired differences from the paper's fit."""
+    """Return the table of `compared`: medians, 90 % of the poses, and what distance changes, pose by pose."""
     one = next(iter(found.values()))
     lines = [
         f"Direction and distance, from images: {one['poses']} poses, intervals (95 %) over {one['units']} units",
-        f"{'':42}{'no pose':>8}{'median (90 %) of':>32}{'difference from the paper in':>51}",
+        f"{'':42}{'no pose':>8}{'median (90 %) of':>32}{'change from direction alone in':>51}",
         f"{'':42}{'[%]':>8}{'position [m]':>17}{'heading [deg]':>15}{'position [m]':>26}{'heading [deg]':>25}",
     ]
     for name, table in found.items():
         lines.append(f"Pairs {name.replace('_', ' ')} ({table['poses']} poses)")
         for fit in FITS:
-            text = {key: "-" if x is None else f"{x:.2f}" for key, x in table[fit].items()}
+            text = {key: "-" if x is None else f"{x:z.2f}" for key, x in table[fit].items()}
             sizes = [f"{text[f'median_{u}']} ({text[f'ninety_percent_{u}']})" for u in ("m", "deg")]
-            ends = [[text[f"{end}_less_paper_{u}"] for end in ("median", "low", "high")] for u in ("m", "deg")]
-            told = ["" if fit == PAPER else f"{middle} ({low} to {high})" for middle, low, high in ends]
+            ends = [[text[f"{end}_change_{u}"] for end in ("median", "low", "high")] for u in ("m", "deg")]
+            told = ["" if fit == ALONE else f"{middle} ({low} to {high})" for middle, low, high in ends]
             lines.append("  {:40}{:>8}{:>17}{:>15}{:>26}{:>25}".format(fit, text["no_pose_percent"], *sizes, *told))
     return "\n".join(lines)
