@@ -9,6 +9,7 @@ import pytest
 
 from course_lib import cli
 from course_lib.cli import find_command
+from course_lib.experiments.bearing_only import bearing_table
 from course_lib.experiments.corridor import table_1
 from course_lib.experiments.finale import finale_text
 from course_lib.experiments.intervals import wilson_percent
@@ -206,6 +207,11 @@ def test_the_rows_of_the_rooms_and_of_the_tilts_are_the_stored_shares_intervals_
         cells = [f"{found['paper']['correct_percent']:.0f}", f"{found['library']['unable_percent']:.0f}"]
         cells += ["{median_dx_m:.2f}, {median_dy_m:.2f}, {median_dtheta_deg:.1f}".format(**one) for one in correct]
         assert row(f"from {source.replace('_', ' ')}, {tilt} degrees |")[:4] == cells
+
+
+@pytest.mark.parametrize("where", ["rooms", "room"])
+def test_the_tables_of_direction_and_distance_are_the_stored_ones(where):
+    assert is_quoted(bearing_table(stored("room/bearing_only.json")[where]))
 
 
 ANSWERS = [("one_view", f"one view, {name}", name) for name in ("greedy", "hungarian", "consistent")]

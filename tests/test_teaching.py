@@ -1,5 +1,5 @@
-"""TEACHING.md: plans whose minutes add up, an entry for every lesson and project, commands, links and hints that exist,
-a table of costs for every notebook, and an example exercise that really is one."""
+"""TEACHING.md: plans whose minutes add up, an entry for every lesson, foundation and project, commands, links and hints
+that exist, a table of costs for every notebook, and an example exercise that really is one."""
 
 import functools
 import re
@@ -12,23 +12,24 @@ import pytest
 
 from course_lib.cli import COMMANDS, find_command, parse
 from course_lib.lessons.kit.exercises import find_exercise, judge, lesson_exercises
-from course_lib.paths import REPOSITORY, notebook_paths, project_paths
+from course_lib.paths import REPOSITORY, foundation_paths, notebook_paths, project_paths
 from tools.bench_tables import capacity_sentence, lessons_rows
 from tools.refresh import solution_cell, stub_cell
 
 TEACHING = (REPOSITORY / "TEACHING.md").read_text(encoding="utf-8")
 PATHS = {path.name[:2]: path for path in [*notebook_paths(), *project_paths()]}
+FOUNDATIONS = {path.name[:2]: path for path in foundation_paths()}
 PARTS = ["Before", "Together", "After", "Mistakes"]
 
 
 @functools.cache
 def title_of(number: str) -> str:
-    return nbformat.read(PATHS[number], as_version=4).cells[0].source
+    return nbformat.read((PATHS | FOUNDATIONS)[number], as_version=4).cells[0].source
 
 
 def minutes_of(number: str) -> int:
     """Minutes of a lesson, or of a project whose title says hours, as its first cell says."""
-    found = re.search(r"\*\*([\d.]+) (minutes|hours)", title_of(number))
+    found = re.search(r"\*\*(?:About )?([\d.]+) (minutes|hours)", title_of(number))
     return round(float(found[1]) * (60 if found[2] == "hours" else 1))
 
 
@@ -75,8 +76,8 @@ def test_the_minutes_of_a_plan_add_up_and_it_has_each_lesson_once_and_in_order(p
         assert sorted(lessons + missing) == [path.name[:2] for path in notebook_paths()]
 
 
-@pytest.mark.parametrize("number", PATHS)
-def test_every_lesson_and_project_has_its_entry_with_its_time_and_a_question(number):
+@pytest.mark.parametrize("number", [*PATHS, *FOUNDATIONS])
+def test_every_lesson_foundation_and_project_has_its_entry_with_its_time_and_a_question(number):
     heading = re.search(rf"^### {number} · .* \(([\d.]+) (min|h)\)$", TEACHING, re.M)
     assert float(heading[1]) * (60 if heading[2] == "h" else 1) == minutes_of(number)
     entry = section(f"{number} · ")
@@ -86,7 +87,7 @@ def test_every_lesson_and_project_has_its_entry_with_its_time_and_a_question(num
     assert len(re.findall(rf"\b{number}\.\d \"", entry)) >= 2
 
 
-@pytest.mark.parametrize(("number", "quoted"), re.findall(r"\b(\d\d\.\d|P\d\.\d) \"([^\"]+)\"", TEACHING))
+@pytest.mark.parametrize(("number", "quoted"), re.findall(r"\b(\d\d\.\d|[PF]\d\.\d) \"([^\"]+)\"", TEACHING))
 def test_a_quoted_mistake_is_a_hint_of_that_exercise(number, quoted):
     hints = [mistake.hint for mistake in find_exercise(number).known]
     assert any(" ".join(quoted.split()) in hint for hint in hints), hints

@@ -14,8 +14,16 @@ import numpy as np
 from matplotlib.figure import Figure
 from PIL import Image
 
-from course_lib.depth_mcl import DepthRenderer, SceneMap, likelihood, normalize_likelihood, propagate, read_sequence
-from course_lib.depth_mcl import resample, weights
+from course_lib.depth_mcl import (
+    DepthRenderer,
+    SceneMap,
+    likelihood,
+    normalize_likelihood,
+    propagate,
+    read_sequence,
+    resample,
+    weights,
+)
 from course_lib.files import atomic_write
 from course_lib.geometry import state_from_optical_pose
 from course_lib.paths import REPOSITORY, data_path

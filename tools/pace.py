@@ -20,7 +20,7 @@ from course_lib.paths import REPOSITORY, numbered_paths
 WORDS_A_MINUTE, LINES_A_MINUTE, A_FIGURE, A_PANEL = 130, 10, 1, 8
 AN_EXERCISE = {"warm-up": 4, "core": 9, "challenge": 30}
 STATED = re.compile(r"\*\*About \d+ minutes\*\* \(\d+ with all parts marked \*More\*\)")
-README = REPOSITORY / "notebooks" / "README.md"
+PAGES = [REPOSITORY / name for name in ("README.md", "TEACHING.md", "notebooks/README.md")]
 
 
 class Pace(NamedTuple):
@@ -101,22 +101,26 @@ def reading(notebook: nbformat.NotebookNode) -> tuple[float, float]:
     return 1000 * len(re.findall(r"[\w)]:(?:\s|$)", text)) / max(words(text), 1), statistics.median(lengths)
 
 
-def write_readme(minutes: dict[str, int]) -> None:
-    """Write the core minutes of every lesson, and the sums of the paths, into notebooks/README.md."""
-    lines = README.read_text(encoding="utf-8").splitlines()
-    for k, line in enumerate(lines):
-        if row := re.match(r"\| \[(\w\d) · ", line):
-            lines[k] = re.sub(r"\(\d+ min\)", f"({minutes[row[1]]} min)", line)
-        elif path := re.match(r"(\| [a-z0-9 ]+ \| ((?:\d\d(?:, )?)+) \| )\d+ h \d+ min \|$", line):
-            hours, rest = divmod(sum(minutes[number] for number in path[2].split(", ")), 60)
-            lines[k] = f"{path[1]}{hours} h {rest} min |"
-    atomic_write(README, "\n".join(lines) + "\n")
+def with_minutes(line: str, minutes: dict[str, int]) -> str:
+    """Return a line of a README or of TEACHING.md with the minutes of its lessons, or with their sum."""
+    if row := re.match(r"\| \[(\w\d) (?:· )?|### ([0-9F]\d) · ", line):
+        number = row[1] or row[2]
+        return re.sub(r"\(\d+ min\)|\d+ min(?= \|$)", lambda m: re.sub(r"\d+", str(minutes[number]), m[0]), line)
+    if path := re.match(r"(\| [a-z0-9 ]+ \| ((?:\d\d(?:, )?)+) \| )\d+ h \d+ min \|$", line):
+        hours, rest = divmod(sum(minutes[number] for number in path[2].split(", ")), 60)
+        return f"{path[1]}{hours} h {rest} min |"
+    if meeting := re.match(r"(\| \d+ \| ((?:\d\d(?:, )?)+) \| )(\d+) \| (\d+) \| (.*)", line):
+        lessons = sum(minutes[number] for number in meeting[2].split(", "))
+        talk = int(meeting[3]) + int(meeting[4]) - lessons
+        at_home = re.sub(r"lesson (\d\d) \(\d+ min\)", lambda m: f"lesson {m[1]} ({minutes[m[1]]} min)", meeting[5])
+        return f"{meeting[1]}{lessons} | {talk} | {at_home}"
+    return line
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `pace`."""
     parser.add_argument("lessons", nargs="*", metavar="NN", help="lessons, such as 03 or F1 (default: all)")
-    what = "write minutes and sums into notebooks/README.md, and minutes into first cells; nothing else changes"
+    what = "write the minutes into first cells, and of all lessons into the READMEs and TEACHING.md"
     parser.add_argument("--write", action="store_true", help=what)
 
 
@@ -135,8 +139,9 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.write:
             write_minutes(notebook)
             atomic_write(paths[number], nbformat.writes(notebook) + "\n")
-    if arguments.write and not arguments.lessons:
-        write_readme(minutes)
+    for page in PAGES if arguments.write and not arguments.lessons else ():
+        lines = page.read_text(encoding="utf-8").splitlines()
+        atomic_write(page, "\n".join(with_minutes(line, minutes) for line in lines) + "\n")
     return 0
 
 

@@ -12,6 +12,7 @@ from course_lib.files import run_folder, temporary_folder
 from course_lib.paths import REPOSITORY, data_path
 
 NETWORK_FILES = (".cfg", ".weights", ".names", ".json")  # what makes a detector what it is
+BEARING_ONLY = "also fit each pose to the directions of the objects alone, without their distances"
 OTHERS = {"experiment", "out", "json", "debug"}  # arguments that are no parameters of the experiment
 
 
@@ -63,6 +64,7 @@ def _room(parser: argparse.ArgumentParser) -> None:
     options.add_text(parser, "--association", "NAME", told, "greedy")
     told = "also localize from the images rolled by K columns, and print how far the pose moves (default: not)"
     parser.add_argument("--roll", type=int, nargs="+", metavar="K", default=[], help=told)
+    options.add_flag(parser, "--bearing-only", BEARING_ONLY)
 
 
 def _rooms(parser: argparse.ArgumentParser) -> None:
@@ -79,6 +81,7 @@ def _rooms(parser: argparse.ArgumentParser) -> None:
     options.add_number(parser, "--view-poses", told)
     told = "also switch off each part of the consistent matcher's evidence, on the right map and on a wrong one"
     options.add_flag(parser, "--ablation", told)
+    options.add_flag(parser, "--bearing-only", BEARING_ONLY)
     options.add_detector_arguments(parser)
     options.add_number(parser, "--processes", "rooms made at a time (default: one for each core)")
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.beyond.look_alikes.matchers import matcher
+from course_lib.experiments import bearing_only as directions
 from course_lib.experiments import room_evaluation
 from course_lib.experiments.room_evaluation import INCORRECT, NO_OBJECT, PoseOutcome, median, outcome, summary
 from course_lib.experiments.room_tables import tables
@@ -58,6 +59,7 @@ def run(
     detector,
     association: str,
     roll: list[int],
+    bearing_only: bool,
 ) -> Outcome:
     """Run `demo room`: both experiments, from images and from exact boxes. detector: `YoloDetector`."""
     if seed is not None and data is not None:
@@ -90,8 +92,17 @@ def run(
     result = {"seed": recording.seed, **_summarize(experiments, summaries, semantic_map, recording.rig.baseline)}
     if roll:
         result["rolled_images"] = {name: turn_summary(pairs) for name, pairs in rolled.items()}
+    text = tables(result)
+    if bearing_only:
+        results = [one for by in experiments.values() for one in by["images"]]
+        result["bearing_only"] = directions.compared(
+            # A pose at both heights is one unit.
+            (one.pair.name, one.localization, one.true_landmarks, one.pair.pose, semantic_map.positions)
+            for one in results
+        )
+        text += "\n\n" + directions.bearing_table(result["bearing_only"])
     files = {"room.json": (result, _rows(experiments))}
-    return Outcome(result, tables(result), files, "room", (semantic_map, experiments))
+    return Outcome(result, text, files, "room", (semantic_map, experiments))
 
 
 def _summarize(experiments: dict, summaries: dict, semantic_map: SemanticMap, baseline: float) -> dict:

@@ -4,15 +4,16 @@ Poses of one room see the same look-alikes. So beside the 95 % interval of a sha
 stands one that draws whole rooms (bootstrap). Where it is wider, believe it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby, product
 
 import numpy as np
 
+from course_lib.experiments import bearing_only as directions
 from course_lib.experiments import room_evaluation
 from course_lib.experiments.intervals import share_intervals, wilson_percent
 from course_lib.experiments.look_alikes import answer_tables, answers_summary
-from course_lib.experiments.observed_rooms import JudgedPose, judged_poses, observe_room, observe_views
+from course_lib.experiments.observed_rooms import JudgedPose, judged_poses, observe_room, observe_views, stored_map
 from course_lib.experiments.room import SOURCES, pose_columns
 from course_lib.experiments.room_evaluation import KINDS, NO_OBJECT, summary
 from course_lib.experiments.runner import Outcome, Runner
@@ -50,6 +51,7 @@ def run(
     views: int,
     view_poses: int | None,
     ablation: bool,
+    bearing_only: bool,
     network: list,
 ) -> Outcome:
     """Run `demo rooms`: the rooms that are missing, also tilted and with further views where asked, then tables."""
@@ -77,11 +79,22 @@ def run(
         result.setdefault("tilts", {})[f"{tilt:g}"] = both
     text = f"{tables(result)}\n\n{answer_tables(result['answers'])}"
     text += "\n\n" + tilt_table(result["tilts"]) if tilts else ""
+    if bearing_only:
+        result["bearing_only"] = directions.compared(_poses_from_images(rooms, judged))
+        text += "\n\n" + directions.bearing_table(result["bearing_only"])
     names, curve = ("seed", "experiment", "pose", "source", "method"), result["answers"].get("risk_coverage")
     rows = [
         dict(zip(names, one[:5], strict=True)) | pose_columns(one.pose, one.localization, one.outcome) for one in judged
     ]
     return Outcome(result, text, {"rooms.json": (result, rows)}, "risk_coverage" if curve else "", curve)
+
+
+def _poses_from_images(rooms: Sequence[dict], judged: Sequence[JudgedPose]) -> Iterator[tuple]:
+    """Yield what `bearing_only.compared` asks of every pose; a room is a unit."""
+    positions = {room["seed"]: stored_map(room).positions for room in rooms}
+    for one in judged:
+        if (one.source, one.method) == ("images", "paper"):
+            yield one.seed, one.localization, one.true_landmarks, one.pose, positions[one.seed]
 
 
 def rooms_summary(rooms: Sequence[dict], judged: Sequence[JudgedPose]) -> dict:

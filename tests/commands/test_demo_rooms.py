@@ -21,7 +21,8 @@ def demo_room(tmp_path_factory):
     """`demo room` on the first pose of each experiment: its folder, and what it printed."""
     folder, said = tmp_path_factory.mktemp("demo"), io.StringIO()
     with contextlib.redirect_stdout(said):
-        assert main(["demo", "room", "--poses", "1", "--roll", "640", "--out", str(folder)]) == 0
+        words = ["demo", "room", "--poses", "1", "--roll", "640", "--bearing-only"]
+        assert main([*words, "--out", str(folder)]) == 0
     return folder, said.getvalue()
 
 
@@ -52,6 +53,7 @@ def test_the_room_has_rates_and_errors_by_experiment_and_method_a_row_a_pose_and
         "experiment 2, ours, exact boxes, weighted_fit",
         "Images rolled by 640 columns",
         "pairs weighted by their covariance",
+        "Direction and distance, from images: 2 poses, intervals (95 %) over 1 units",
     ):
         assert part in text
 
@@ -92,6 +94,15 @@ def test_the_rooms_table_has_the_papers_row_ours_and_their_intervals(made, tmp_p
     assert text.count("\n0.3 degrees\n") == 3, "shares, errors of correct poses, errors of all"
     assert made == [(seed, 20, tilt) for tilt in (None, 0.3) for seed in (10001, 10002)]
     assert len(rows_of(tmp_path / "rooms.csv")) == 2 * 4 * 2 * len(METHODS), "rooms, poses, sources, methods"
+
+
+def test_asked_for_direction_alone_the_rooms_table_tells_it_beside_the_papers_fit(made, tmp_path, printed, told):
+    words = f"demo rooms --seeds 10001-10002 --processes 1 --association greedy --out {tmp_path}".split()
+    text, found = printed(*words, "--bearing-only"), told(*words, "--bearing-only")["bearing_only"]
+    assert "Direction and distance, from images: 8 poses, intervals (95 %) over 2 units" in text
+    assert text.count("  direction alone ") == len(found) == 3
+    assert found["true"]["direction alone"]["median_m"] < 1e-6
+    assert "bearing_only" not in told(*words)
 
 
 def test_finished_rooms_are_not_made_again_whatever_is_asked_of_them(made, tmp_path, told):
