@@ -21,7 +21,10 @@ def minutes_of(number: str) -> int:
 
 
 def row_of(path) -> str:
-    return next((line for line in README.splitlines() if f"]({path.relative_to(FOLDER).as_posix()})" in line), "")
+    return next(
+        (line for line in README.splitlines() if " · " in line and f"]({path.relative_to(FOLDER).as_posix()})" in line),
+        "",
+    )
 
 
 @pytest.mark.parametrize("path", [*notebook_paths(), *foundation_paths()], ids=lambda path: path.name[:2])
