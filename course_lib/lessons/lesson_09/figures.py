@@ -3,7 +3,6 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from course_lib.depth_mcl.uncertainty import Tempered
 from course_lib.lessons.kit.display import described
 from course_lib.lessons.lesson_09.runs import Track
 from course_lib.plots.figures import BLACK, BLUE, SKY_BLUE, VERMILION, depth_images, line_style, new_figure
@@ -36,30 +35,11 @@ def clouds(densities: list[tuple], n: int) -> Figure:
     return described(figure, alt)
 
 
-def levels(measured: list[np.ndarray]) -> Figure:
-    """One frame's measured image in the sizes of the pyramid."""
-    alt = "One depth image in three sizes: the coarse one still shows walls, floor and a door frame."
-    titles = [f"{image.shape[1]} x {image.shape[0]}" for image in measured]
-    return described(depth_images(measured, titles, (0, 8), size=(9.2, 2.6)), alt)
-
-
-def weights(papers: np.ndarray, tempered: Tempered) -> Figure:
-    """The greatest weights of a layer, the paper's and tempered ones, largest first."""
-    alt = "The paper's weights fall from one to a millionth at once; the tempered ones fall slowly over forty ranks."
-    figure, axes = new_figure(size=(6.0, 2.9))
-    for index, (name, w) in enumerate((("the paper's, beta 0.01", papers), ("tempered", tempered.weights))):
-        greatest = np.maximum(np.sort(w)[::-1][:40], 1e-6)
-        axes.semilogy(np.arange(1, 41), greatest, **(line_style(index) | SMALL), label=name)
-    axes.set(title="The 40 greatest of 200 weights (below 1e-6 drawn there)", xlabel="rank [-]", ylabel="weight [-]")
-    axes.legend()
-    return described(figure, alt)
-
-
 def tracks(named: dict[str, Track]) -> Figure:
     """Errors of position and rotation over the images, on logarithmic axes."""
-    alt = """Errors over 15 images on logarithmic axes: the annealed filter stays near one centimetre and a tenth of a
-        degree, both runs of the paper's filter lie ten to several hundred times higher."""
-    figure, (position, rotation) = new_figure(1, 2, size=(9.0, 3.0))
+    alt = """Errors over 15 images on logarithmic axes: both runs of the annealed filter stay near one centimetre and
+        a tenth of a degree, both runs of the paper's filter lie ten to several hundred times higher."""
+    figure, (position, rotation) = new_figure(1, 2, size=(9.0, 3.2))
     for index, (name, track) in enumerate(named.items()):
         position.semilogy(track.position, **(line_style(index) | SMALL), label=name)
         rotation.semilogy(np.maximum(track.rotation, 0.01), **(line_style(index) | SMALL))
@@ -92,21 +72,6 @@ def basin(found: dict[float, tuple[np.ndarray, np.ndarray]]) -> Figure:
     return described(figure, alt)
 
 
-def ablation(shares: dict[str, tuple[float, list[float]]]) -> Figure:
-    """Share of good frames with one idea after the other switched off, and 95 % intervals."""
-    alt = """Share of good frames with one idea switched off: without refinement 5 percent, with a single hypothesis 62,
-        without annealing or the second look 95 and 96, with everything or without one of the others 98 or 99 percent.
-        """
-    figure, axes = new_figure(size=(6.8, 2.7))
-    names = list(shares)[::-1]
-    for k, (share, interval) in enumerate(shares[name] for name in names):
-        axes.plot(interval, [k, k], color=BLUE, linewidth=2.5)
-        axes.plot(share, k, "o", color=VERMILION, markersize=6)
-    axes.set(title="A kitchen, every 8th image", xlabel="frames within 5 cm and 5 degrees [%]", xlim=(0, 102))
-    axes.set(ylabel="switched off [-]", yticks=range(len(names)), yticklabels=names)
-    return described(figure, alt)
-
-
 def deviations(track: Track) -> Figure:
     """Every component's error over the images, with three sigma of what the filter expects."""
     alt = """Errors of x, y, z and of the turns about three axes over 15 images, all inside the blue bands of three
@@ -115,27 +80,10 @@ def deviations(track: Track) -> Figure:
     for k, axes in enumerate(grid.flat):
         scale, unit = (1000, "mm") if k < 3 else (np.rad2deg(1), "degrees")
         band = 3 * scale * track.error_sigmas[:, k]
-        axes.fill_between(np.arange(len(band)), -band, band, color=SKY_BLUE, alpha=0.4)
-        axes.plot(scale * track.deviations[:, k], **(line_style(3) | SMALL))
+        axes.fill_between(np.arange(len(band)), -band, band, color=SKY_BLUE, alpha=0.4, label="three sigma")
+        axes.plot(scale * track.deviations[:, k], **(line_style(3) | SMALL), label="error")
         axes.set(title=COMPONENTS[k], xlabel="image [-]", ylabel=f"error [{unit}]")
-    return described(figure, alt)
-
-
-def coverage(recordings: dict[str, list[dict]]) -> Figure:
-    """Normalized squared error and share within three sigma of every recording, for every filter."""
-    alt = """For five recordings: the annealed filter's normalized error lies near 1, all its errors within three sigma;
-        with calibration errors near 5 to 10 and 85 to 100 percent; the paper's filter at about 1000 and 80 percent."""
-    figure, pair = new_figure(1, 2, size=(9.4, 3.1))
-    keys, honest = ("mean_normalized_error", "within_3_sigma_percent"), (1, 97)
-    for axes, key, level in zip(pair, keys, honest, strict=True):
-        for index, (name, rows) in enumerate(recordings.items()):
-            style = line_style(index) | {"linestyle": "none", "markersize": 6, "label": name}
-            axes.plot(np.arange(1, len(rows) + 1) + 0.08 * (index - 1.5), [row[key] for row in rows], **style)
-        axes.axhline(level, **DASHED)
-    pair[0].set(title="Normalized squared error (honest: 1)", xlabel="recording [-]", ylabel="mean [-]")
-    pair[0].set(yscale="log", ylim=(0.2, 1e5))
-    pair[1].set(title="Errors within three sigma (wanted: 97 %)", xlabel="recording [-]", ylabel="share [%]")
-    pair[0].legend(fontsize=7.5, loc="upper center", ncols=2, framealpha=0.95)
+    grid[0, 0].legend(fontsize=8)
     return described(figure, alt)
 
 
@@ -154,7 +102,9 @@ def slides(named: dict[str, tuple]) -> Figure:
         """
     figure, grid = new_figure(1, len(named), size=(9.6, 2.8))
     for axes, (name, (errors, sigmas, _)) in zip(grid, named.items(), strict=True):
-        axes.fill_between(np.arange(len(errors)), -3 * sigmas[:, 0], 3 * sigmas[:, 0], color=SKY_BLUE, alpha=0.4)
-        axes.plot(errors[:, 0], **line_style(3))
-        axes.set(title=name, xlabel="image [-]", ylabel="error along the axis [m]", ylim=(-2.0, 2.0))
+        band = 3 * sigmas[:, 0]
+        axes.fill_between(np.arange(len(band)), -band, band, color=SKY_BLUE, alpha=0.4, label="three sigma")
+        axes.plot(errors[:, 0], **line_style(3), label="error")
+        axes.set(title=name, xlabel="image [-]", ylabel="error along the axis [m]", ylim=(-6.0, 6.0))
+    grid[0].legend(fontsize=8, loc="lower left")
     return described(figure, alt)

@@ -58,6 +58,12 @@ def localize(
     return Track(estimates, [one.status for one in estimates], position, np.rad2deg(rotation), deviations, sigmas)
 
 
+def drawn(track: Track) -> tuple[float, float]:
+    """Return how many particles were drawn for a frame, and how many images of the map, medians over the frames."""
+    particles = [sum(len(layer.weights) for layer in one.layers) for one in track.estimates]
+    return float(np.median(particles)), float(np.median([one.renders for one in track.estimates]))
+
+
 def measure_basin(rng: np.random.Generator, starts: int = 12) -> dict[float, tuple[np.ndarray, np.ndarray]]:
     """Let Gauss-Newton start around true poses, moved by so many metres and turned by 60 times as many degrees.
 
