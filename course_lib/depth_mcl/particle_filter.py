@@ -74,8 +74,8 @@ def resample(
         multinomial  n independent draws
         residual     floor(n w~_i) copies for certain, the rest by multinomial draws from n w~_i - floor(n w~_i)
     w: `(N,)` not negative, with a positive sum. n: how many live on (None: N, as in the paper). Indices ascend.
-    Raises `ValueError` for bad weights or an unknown scheme. The paper says only that particles are copied and removed
-    by weight. Source: paper 1, section 3.4.
+    Raises `ValueError` for bad weights or an unknown scheme. Source: paper 1, section 3.4, which names no scheme:
+    「パーティクルの重みに応じて、パーティクルの複製と消滅を行い」 (particles are copied and removed by their weights).
     """
     w = np.asarray(w, dtype=np.float64)
     if w.ndim != 1 or len(w) == 0 or not np.isfinite(w).all() or (w < 0).any() or w.sum() <= 0:

@@ -66,3 +66,9 @@ def test_figures_are_numbered_in_order_and_the_text_refers_to_them(lesson):
     captions = re.findall(r"<em>Figure (\w+)\.(\d+)\. ", "".join(lesson.html))
     assert captions == [(number, str(k + 1)) for k in range(len(captions))]
     assert len(captions) >= core_and_all(lesson.notebook)[1].figures
+
+
+def test_what_a_paper_says_is_quoted_in_its_own_words(lesson):
+    says = re.compile(r"\b[Pp]aper(?: [12])? (?:says|reports|writes|states|claims|names|concludes|suspects)\b")
+    claims = [cell for cell in lesson.cells if cell.cell_type == "markdown" and says.search(cell.source)]
+    assert [cell.id for cell in claims if "「" not in cell.source] == []
