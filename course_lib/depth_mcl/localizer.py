@@ -31,8 +31,8 @@ from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 
 # Standard deviations of the system noise a frame for the paper's experiment, metres and radians, forward and left. The
-# paper found its own 「試行錯誤的に」 (by trial and error, section 4); these were chosen on tuning seeds, forward 1.5 of the wagon's longest steps. A camera
-# that is carried sideways, or anywhere, needs as much to the left as forward.
+# paper found its own 「試行錯誤的に」 (by trial and error, section 4). These were chosen on tuning seeds: forward 1.5
+# of the wagon's longest steps. A camera that is carried sideways, or anywhere, needs as much to the left as forward.
 SIGMA_XY_YAW = (0.15, 0.04, 0.0, 0.0, 0.0, np.deg2rad(1.5))
 
 MAP_MARGIN = 1.0  # metres outside the map's bounding box where a start is still taken for a camera that looks at it
