@@ -29,8 +29,7 @@ def test_an_alarm_needs_both_conditions_and_a_person_who_walks_by_makes_no_pose_
     assert told == [(0, 0), (0, 2), (0, None)]  # false alarms, and the delay of the right one
     for scores, _ in traces().values():
         assert scores[list(PERSON)].min() < 0.7 * scores[:10].min()
-    # In one of the three, the person pulls the motion that two images tell, and the filter is lost while it is right.
-    assert [bool(lost[:KIDNAPPED].any()) for _, lost in traces().values()] == [False, True, False]
+    assert not any(lost[:KIDNAPPED].any() for _, lost in traces().values())
 
 
 def test_in_the_room_next_door_the_filter_says_tracked():

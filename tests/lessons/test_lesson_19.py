@@ -1,8 +1,9 @@
-"""Lesson 19: a place has one recording, two answers join by their information, and the lesson's story is true."""
+"""Lesson 19: a place has one recording, two answers that err together join with care, and the story is true."""
 
 import numpy as np
 import pytest
 
+from course_lib.lessons.foundation_3 import covariance_intersection
 from course_lib.lessons.lesson_19 import anywhere_panel, journey, misplaced, panel, stages, turn_and_look, world
 
 STORY = (3.35, 3.30, 65)
@@ -16,14 +17,15 @@ def test_who_comes_back_to_a_place_finds_the_same_recording():
     assert not np.allclose(elsewhere[:, 2], place.states[:, 2], atol=1e-6)
 
 
-def test_information_adds_up_and_angles_are_joined_across_the_half_turn(rng):
-    a, b = (m @ m.T + np.eye(6) for m in rng.standard_normal((2, 6, 6)))
-    x, y = rng.uniform(-1, 1, (2, 6))
-    state, covariance = stages.joined(x, a, y, b)
-    assert np.linalg.inv(covariance) == pytest.approx(np.linalg.inv(a) + np.linalg.inv(b))
-    assert state == pytest.approx(covariance @ (np.linalg.solve(a, x) + np.linalg.solve(b, y)))
-    yaw = np.eye(6)[5]
-    assert stages.joined(3.0 * yaw, np.eye(6), -2.9 * yaw, np.eye(6))[0] == pytest.approx((0.05 - np.pi) * yaw)
+def test_start_and_filter_err_together_so_a_kalman_update_claims_more_than_covariance_intersection():
+    place = journey(*STORY)
+    first, known = place.best[0], stages.start_covariance(place.found.covariance)
+    both = stages.start_state(place.found.pose), known, first.state, first.error_covariance
+    _, careful, omega = covariance_intersection(*both)
+    kalman = np.linalg.inv(np.linalg.inv(known) + np.linalg.inv(first.error_covariance))
+    assert 0 < omega < 1
+    assert np.linalg.eigvalsh(careful - kalman).min() > 0
+    assert np.diag(careful)[[0, 1, 5]] == pytest.approx(np.array([0.025, 0.0055, np.deg2rad(0.23)]) ** 2, rel=0.2)
 
 
 def test_the_filter_chooses_among_look_alikes_and_a_robot_at_a_wall_turns_and_knows():

@@ -11,7 +11,6 @@ from course_lib.lessons.lesson_10.narrowing import (
     coarse_renderer,
     distance_to_either,
     free_space,
-    inside_furniture,
     narrow,
     shares,
     start_anywhere,

@@ -123,24 +123,24 @@ EXERCISES = [
         "the example of the task": lambda rng: (np.array([0.8, 0.8, np.nan, 0.4]), 0.5, 0.1),
     }, mistakes="""
         max(0, 1 - s / L) => 1 - s / L
-        If the short mean is the greater one, all is well. Then the share is 0; it is never negative.
+        If the short mean is the greater one, all is well. Then the share is 0, and it is never negative.
         return np.array(shares) => return np.where(np.isnan(scores), np.nan, shares)
         return np.array(shares) => return np.where(np.isnan(scores), 0.0, shares)
-        In a dark frame the means stay as they are, and so does the share: not NaN, and not 0.
+        In a dark frame the means stay as they are, and so does the share. It is neither NaN nor 0.
         ... => return new_shares(scores, long, short)
-        Upside down: the short mean, which follows quickly, goes above the fraction line, the long one below.
+        You have them upside down. The short mean, which follows quickly, goes above the fraction line.
         max(0, 1 - s / L) => min(1, s / L)
         Your share is how much of the score is left. New particles replace the part that is missing from 1.
         1 - s / L => L - s
         You take the difference of the means. Their ratio counts.
         s = L = scores[0] => s = L = 0.0
-        Your means begin at 0, and the long one needs a hundred frames to forget it. Begin with a score.
+        Your means begin at 0, and the long one needs a hundred frames to forget it. Begin with the first score.
         if not np.isnan(score): => if True:
         One NaN score makes every later mean NaN. In the dark the means stay as they are.
         ... => return new_shares(np.nan_to_num(scores), short, long)
         You take a dark frame for the score 0. The camera saw nothing, so the means stay as they are.
         ... => return np.append(0.0, new_shares(scores, short, long)[:-1])
-        You are a frame late: first take the frame's score into the means, then form the share.
+        You are a frame late. First take the frame's score into the means, then form the share.
         ... => return new_shares(scores, 1 - short, 1 - long)
         You multiply the old mean by the share. The share belongs to the new frame.
     """),
@@ -152,7 +152,7 @@ EXERCISES = [
         "ever new bins": lambda rng: (np.arange(3_200) % 400, 20),
     }, mistakes="""
         len(seen), least => max(1, len(set(bins[: n - 1]))), least
-        You compare too early: first count the bin of the present draw, then compare.
+        You compare too early. First count the bin of the present draw, then compare.
         return len(bins) => return -1
         If the draws run out before the bound is reached, the answer is their number T.
         return n => return len(seen) and also return len(bins) => return len(seen)
@@ -187,18 +187,18 @@ EXERCISES = [
         return np.array(kept) => return np.isin(np.arange(len(scores)), kept)
         Return indices into the states as they were given, not scores, states or a mask.
         wrap_angle(states[kept, 2] - states[i, 2]) => states[kept, 2] - states[i, 2]
-        3.1 and -3.1 rad are 0.08 rad apart, not 6.2: wrap the difference of the headings.
+        3.1 and -3.1 rad are 0.08 rad apart and not 6.2. Wrap the difference of the headings.
         (apart < metres) & (turned < radians) => (apart < metres) | (turned < radians)
         States at one place are near *and* look the same way. You ask for only one of the two.
         (apart < metres) & (turned < radians) => apart < metres
-        You forget the heading: two directions at one spot are two places.
+        You forget the heading. Two directions at one spot are two places.
         (apart < metres) & (turned < radians) => turned < radians
-        You forget the position: two rooms with the same heading are two places.
+        You forget the position. Two rooms with the same heading are two places.
         np.argsort(-scores) => range(len(scores))
         np.argsort(-scores) => np.argsort(scores)
-        The best of all comes first, then the next best: sort by falling score.
+        The best of all comes first, then the next best. Sort by falling score.
         return np.array(kept) => return np.sort(kept)
-        The right places, but sorted by index. The best comes first.
+        These are the right places, but you sort them by index. The best comes first.
     """),
     Exercise("10.5", search_numbers, lambda rng: (
         int(10 ** rng.uniform(0.7, 4)), float(10 ** rng.uniform(-3, -0.7)), float(rng.uniform(0.9, 0.999)),
@@ -208,7 +208,7 @@ EXERCISES = [
         np.log(miss) / np.log(1 - 1 / bins) => -np.log(miss) * bins
         exp(-n / bins) is (1 - 1 / bins)^n for many bins only. Take the logarithm of the power itself.
         np.ceil => np.floor
-        One draw too few: with a smaller whole number the bin is missed more often than `miss`. Round up.
+        This is one draw too few. With it the bin is missed more often than `miss`. Round up.
         1 - 1 / bins => 1 / bins
         1 / bins is the probability that a draw hits the camera's bin. Which one must happen n times in a row?
         np.log(miss) => np.log(miss / bins)
@@ -216,13 +216,13 @@ EXERCISES = [
         np.log(miss) => np.log(1 - miss)
         `miss` is the probability that the bin gets no draw, not that it gets one.
         (2 * least) => least
-        Solve (10.3) for the error once more: it stands below the fraction line together with a 2.
+        Solve (10.3) for the error once more. It stands below the fraction line together with a 2.
         norm.ppf(probability) => norm.ppf(1 - probability)
         norm.ppf(probability) => norm.ppf((1 + probability) / 2)
-        z belongs to `probability` itself, one side of the bell: norm.ppf(probability).
+        z belongs to `probability` itself, on one side of the bell. Take norm.ppf(probability).
         (bins - 1) / => bins /
         All bins are occupied, so k = bins, and (10.3) has k - 1 above the fraction line.
         return least, (bins - 1) / (2 * least) * bracket**3 => return least, 0.05
-        The error is not the lesson's: it is the one with which (10.3) asks for just `least` particles.
+        Do not take the lesson's error. Take the one with which (10.3) asks for just `least` particles.
     """),
 ]

@@ -10,7 +10,7 @@ from course_lib.depth_mcl import likelihood, normalize_likelihood, propagate, re
 from course_lib.geometry import optical_pose, rotation_exp, state_from_optical_pose
 from course_lib.lessons.lesson_10.adaptive_count import kld_count, occupied_bins
 from course_lib.lessons.lesson_10.enclosed_space import EnclosedSpace
-from course_lib.lessons.lesson_10.hotel import ALIKE, CAMERA, FURNITURE, hotel_map, leaving_101
+from course_lib.lessons.lesson_10.hotel import ALIKE, CAMERA, hotel_map, leaving_101
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.sensor import subsample_depth
 
@@ -31,11 +31,6 @@ free_space = functools.cache(lambda: EnclosedSpace(hotel_map()))
 # A depth image of the camera, and the map, on 20 x 15 pixels.
 coarse = functools.partial(subsample_depth, camera=CAMERA, coarse=COARSE)
 coarse_renderer = functools.cache(lambda: DepthRenderer(hotel_map(), COARSE))
-
-
-def inside_furniture(positions: np.ndarray) -> np.ndarray:
-    """Return which of positions `(N, 3)` lie inside a piece of furniture."""
-    return np.any([((positions > low) & (positions < high)).all(axis=1) for low, high in FURNITURE], axis=0)
 
 
 def distance_to_either(states: np.ndarray, true: np.ndarray) -> np.ndarray:

@@ -5,7 +5,7 @@ import numpy as np
 from course_lib.lessons.kit.live_figure import LiveFigure
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
 from course_lib.lessons.kit.progress_bar import progress
-from course_lib.lessons.lesson_10.figures import BESIDE, EVENT, draw_camera, draw_hotel, style
+from course_lib.lessons.lesson_10.figures import BELOW, BESIDE, EVENT, LIGHT_TO_DARK, draw_camera, draw_hotel, style
 from course_lib.lessons.lesson_10.hotel import FRAMES, leaving_101
 from course_lib.lessons.lesson_10.narrowing import MAX_PARTICLES, RUNS, narrow, shares
 from course_lib.lessons.lesson_10.trials import GOALS, KIDNAPPED, PERSON, alarms, running_mean, traces
@@ -66,10 +66,11 @@ def anywhere_panel() -> Panel:
     figure, (plan, count) = figures.new_figure(1, 2, size=(10.6, 3.7))
     plan.get_gridspec().set_width_ratios([2.0, 1.0])
     draw_hotel(plan, "Particles from above, and where they look")
-    dots = plan.scatter([], [], c=[], s=9, cmap="cividis", vmin=0, vmax=1, linewidths=0)
-    arrows = plan.quiver(*np.zeros((4, MAX_PARTICLES)), color=figures.BLUE, scale=45, width=0.0016)
+    dots = plan.scatter([], [], c=[], cmap=LIGHT_TO_DARK, vmin=0, vmax=1, linewidths=0)
+    arrows = plan.quiver(*np.zeros((4, MAX_PARTICLES)), color=figures.ORANGE, scale=45, width=0.0016)
     star, double = draw_camera(plan, leaving_101().states[0])
     figure.colorbar(dots, ax=plan, label="weight / greatest [-]", shrink=0.7)
+    plan.legend(ncols=2, **BELOW)
     line, *_ = count.plot([], [], **style(0, 3))
     now, *_ = count.plot([], [], "o", mfc="none", mec=figures.VERMILION, markersize=10, mew=2)
     count.set(title="How many KLD-sampling takes", xlabel="frame [-]", ylabel="particles n [-]")
@@ -81,7 +82,8 @@ def anywhere_panel() -> Panel:
         one, state = rounds[k], leaving_101().states[k]
         order = np.argsort(one.weights, kind="stable")
         xy, yaw = one.particles[order, :2], one.particles[order, 5]
-        dots.set(offsets=xy, array=one.weights[order] / one.weights.max())
+        share = one.weights[order] / one.weights.max()
+        dots.set(offsets=xy, array=share, sizes=6 + 60 * share)
         ends = np.zeros((4, MAX_PARTICLES))
         if directions:
             ends[:, : len(xy)] = [*xy.T, np.cos(yaw), np.sin(yaw)]

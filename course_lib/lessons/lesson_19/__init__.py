@@ -6,7 +6,6 @@ from course_lib.lessons.lesson_19.figures import (
     sensors_figure,
     stages_figure,
     starts_figure,
-    wall_figure,
 )
 from course_lib.lessons.lesson_19.panel import PANELS, anywhere_panel
 from course_lib.lessons.lesson_19.stages import (

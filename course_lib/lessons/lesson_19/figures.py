@@ -73,7 +73,7 @@ def sensors_figure(one: Journey) -> Figure:
     x, y, heading = one.pose
     for angle in (heading - VIEW, heading + VIEW):
         plan.plot([x, x + 2.5 * np.cos(angle)], [y, y + 2.5 * np.sin(angle)], color=figures.BLUE, linewidth=1.2)
-    alt = "A panorama with twelve framed objects; a depth image of a wall and a plant; the room from above."
+    alt = "A panorama with twelve framed objects, a depth image of a wall and a plant, and the room from above."
     return described(figure, alt)
 
 
@@ -86,11 +86,14 @@ def _draw_depth(axes: Axes, depth: np.ndarray, title: str) -> None:
 
 def stages_figure(one: Journey) -> Figure:
     """Draw the same place three times, each closer: the room, what the panoramas say, what the depth camera says."""
-    figure, axes = figures.new_figure(1, 3, size=(10.0, 3.6))
-    draw_room(axes[0], "Before: anywhere in here")
+    figure, axes = figures.new_figure(1, 3, size=(10.4, 4.0))
+    axes[0].get_gridspec().set_width_ratios([1.4, 1.0, 1.0])
+    draw_room(axes[0], "Before, anywhere in here")
+    for name in axes[0].texts:
+        name.set_fontsize(7.5)
     axes[0].plot(*one.pose[:2], **TRUE_PLACE, linestyle="none")
     found, first = one.found, one.best[0]
-    for a, half, title in ((axes[1], 20.0, "After the panoramas"), (axes[2], 5.0, "After the depth image")):
+    for a, half, title in ((axes[1], 20.0, "After the panoramas"), (axes[2], 15.0, "After the depth image")):
         place = 100 * (np.array(found.pose[:2]) - one.pose[:2])
         a.plot(0, 0, **TRUE_PLACE, linestyle="none", label="true place")
         a.plot(*place, "s", color=figures.ORANGE, label="semantic pose")
@@ -103,7 +106,7 @@ def stages_figure(one: Journey) -> Figure:
         a.set(xlabel="x from the true place [cm]", ylabel="y from the true place [cm]")
         a.legend(fontsize=8, loc="lower left")
     return described(
-        figure, "Three plans, each closer: the room; the semantic pose and its ellipse; the filter on the cross."
+        figure, "Three plans, each closer. The room, the semantic pose and its ellipse, and the filter on the cross."
     )
 
 
@@ -142,25 +145,7 @@ def starts_figure(one: Journey) -> Figure:
         told = f"{score:.3f}\noff by {state_error(end, one.states[-1])[0]:.2f} m"
         bars.text(k, score + 0.01, told, ha="center", fontsize=8)
     plan.legend(fontsize=7, loc="upper right", bbox_to_anchor=(0.94, 0.76))
-    bars.set(title="How well it explains the depth images", xlabel="start [-]", ylabel="mean raw score [-]")
-    bars.set(ylim=(0, 1.15), xticks=range(1, len(one.runs) + 1))
+    bars.set(title="How well it explains the depth images", ylabel="mean raw score [-]", ylim=(0, 1.15))
+    bars.set_xticks(range(1, len(one.runs) + 1), [f"start {k + 1}" for k in range(len(one.runs))])
     alt = "Left, three starts in the room and where each ends, one at the robot; right, its bar is highest."
-    return described(figure, alt)
-
-
-def wall_figure(one: Journey) -> Figure:
-    """Draw a bare wall: the depth image, and the filter's answer with what it knows of itself, from the side."""
-    figure, (image, side) = figures.new_figure(1, 2, size=(9.0, 3.6))
-    _draw_depth(image, one.depths[0], "What the depth camera sees")
-    heading, last = one.pose[2], one.best[-1]
-    left_and_up = np.array([[-np.sin(heading), np.cos(heading), 0.0], [0.0, 0.0, 1.0]])
-    place = 100 * left_and_up @ (last.state[:3] - one.states[-1, :3])
-    covariance = left_and_up @ last.error_covariance[:3, :3] @ left_and_up.T
-    side.plot(0, 0, **TRUE_PLACE, linestyle="none", label="true place")
-    side.plot(*place, "o", color=figures.BLUE, label="depth filter")
-    side.plot(*ellipse(1e4 * covariance, place), color=figures.BLUE, label="its own 2 sigma")
-    side.set(title="How far off, seen from behind the robot", xlabel="to the left [cm]", ylabel="up [cm]")
-    side.set(xlim=(-100, 100), ylim=(-100, 100), aspect="equal")
-    side.legend(fontsize=7, loc="lower right")
-    alt = "Left, a depth image in upright stripes; right, the estimate in a tall ellipse: its height is not known."
     return described(figure, alt)

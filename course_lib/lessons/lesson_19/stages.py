@@ -177,21 +177,6 @@ def start_covariance(covariance: np.ndarray) -> np.ndarray:
     return start_knowledge(covariance, LEVEL_SIGMA[0], np.rad2deg(LEVEL_SIGMA[1]))
 
 
-def joined(
-    start: np.ndarray, covariance: np.ndarray, state: np.ndarray, state_covariance: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Join the start and the filter's first state `(6,)`, weighed by their covariances, in a Kalman update.
-
-    K = P_0 (P_0 + P_1)^-1        x = x_0 + K (x_1 - x_0)        P = (1 - K) P_0
-    """
-    difference = state - start
-    difference[3:] = wrap_angle(difference[3:])
-    gain = covariance @ np.linalg.inv(covariance + state_covariance)
-    found = start + gain @ difference
-    found[3:] = wrap_angle(found[3:])
-    return found, (np.eye(6) - gain) @ covariance
-
-
 def random_places(n: int) -> list[tuple[float, float, float]]:
     """Return the first n random places of the experiment in this room: x, y [m], heading [degrees]."""
     poses = measurement_poses(world().room, 2 * n, SEED)[::2]  # there are two headings at each place
