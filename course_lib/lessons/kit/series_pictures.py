@@ -21,7 +21,7 @@ from course_lib.paths import REPOSITORY, foundation_paths, notebook_paths
 CHOSEN = {
     "00": "00-second-picture", "01": "01-order-picture", "03": "03-tiles-picture", "07": "07-panel",
     "08": "08-figure-5", "09": "09-same-budget-picture", "10": "10-narrowing-scores-picture",
-    "14": "14-ellipse", "15": "15-panel", "19": "19-stages",
+    "14": "14-ellipse", "15": "15-panel",
     "F1": "F1-beliefs", "F3": "F3-joins",
 }  # fmt: skip
 MAX_SIZE = (420, 230)  # (width, height) in pixels
