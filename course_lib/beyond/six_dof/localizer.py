@@ -328,7 +328,7 @@ class AnnealedLocalizer:
         poses = self._prediction.draw(self.n_particles, spread, self.rng, told)
         before = self._prediction.pose
         pose = before if told is None else retract(before, told.motion)
-        self._prediction.not_found(pose, spread)
+        self._prediction.not_found(pose, spread, measured=told)
         self._views = None if told is not None else self._views  # else the next image shows the motion since this one
         self._covariance = self._predicted_covariance(local(before, pose), spread, told)
         found = _Found(pose, np.nan, NOTHING_MEASURED, poses, (temper(np.zeros(len(poses)), len(poses)),))
