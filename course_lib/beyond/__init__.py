@@ -20,5 +20,6 @@ from course_lib.beyond.look_alikes.matchers import associate_hungarian
 from course_lib.beyond.lost_and_found.global_search import GlobalSearch, PoseCandidate, PoseCandidates
 from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
 from course_lib.beyond.several_views import Motion, SemanticTracker, Track
+from course_lib.beyond.six_dof.calibration import Calibration, CalibrationCheck
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.beyond.six_dof.poses import motion_between

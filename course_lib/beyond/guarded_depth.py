@@ -1,14 +1,16 @@
 """A filter that looks at each frame before it uses it, and says of every frame what became of it.
 
-    localizer = GuardedLocalizer(MonteCarloLocalizer(renderer), period=0.1)
+    localizer = GuardedLocalizer(RecoveringLocalizer(renderer), period=0.1)     # watching, odometry, gravity, recovery
     localizer.initialize(state0)
-    for depth, time in recording:
-        frame = localizer.step(depth, time)       # frame.outcome, frame.estimate
+    for depth, time, increment, gravity in recording:
+        frame = localizer.step(depth, time, increment, gravity)       # frame.outcome, frame.estimate, frame.recovery
 
-A frame at fault is not weighed: the particles move as if nothing had been measured. After faults, as many good frames
-must come before a pose is "tracked". Without faults the filter does exactly what it does without a guard.
+A frame at fault is not weighed: the particles move as if nothing had been measured, or as the odometer says. After
+faults, as many good frames must come before a pose is "tracked". Without faults the filter does exactly what it does
+without a guard.
 """
 
+import inspect
 import warnings
 from typing import Literal, NamedTuple, get_args
 
@@ -17,7 +19,9 @@ import numpy as np
 from course_lib.beyond import being_lost
 from course_lib.beyond.being_lost import Agreement, Debt, TrackStatus, agreement
 from course_lib.beyond.guarded_frames import Fault, FrameCheck
+from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer, RecoveryEstimate
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
+from course_lib.beyond.six_dof.poses import local, optical_increment, retract
 from course_lib.depth_mcl.likelihood import checked_image
 from course_lib.depth_mcl.localizer import Estimate, MonteCarloLocalizer, NoMeasurementWarning
 from course_lib.depth_mcl.one_at_a_time import one_at_a_time
@@ -33,15 +37,22 @@ class GuardedFrame(NamedTuple):
     outcome: Outcome  # Only a "tracked" pose can be relied on.
     estimate: Estimate | AnnealedEstimate | None  # the latest; for a frame out of order, the previous one
     missed: tuple[Estimate | AnnealedEstimate, ...]  # one for every frame that should have come before ("no image")
+    recovery: RecoveryEstimate | None = None  # What a `RecoveringLocalizer` says of its search; else None.
 
 
 class GuardedLocalizer:
-    """A `MonteCarloLocalizer` or `AnnealedLocalizer` whose frames are looked at before they are used.
+    """A localizer whose frames are looked at before they are used.
 
-    period: seconds from frame to frame; None if unknown, then missing frames are not noticed.
+    localizer: a `MonteCarloLocalizer`, an `AnnealedLocalizer` (takes an odometer's increment), or a
+    `RecoveringLocalizer` (takes gravity too). period: seconds from frame to frame; None if unknown, then missing frames
+    are not noticed.
     """
 
-    def __init__(self, localizer: MonteCarloLocalizer | AnnealedLocalizer, period: float | None = None) -> None:
+    def __init__(
+        self,
+        localizer: MonteCarloLocalizer | AnnealedLocalizer | RecoveringLocalizer,
+        period: float | None = None,
+    ) -> None:
         self.localizer = localizer
         self._camera = localizer.renderer.camera
         self._period = period
@@ -57,34 +68,65 @@ class GuardedLocalizer:
         self._check = FrameCheck(self._camera.near, self._camera.far, self._period)
         self._agreements: list[Agreement] = []
         self._last: Estimate | AnnealedEstimate | None = None
+        self._recovery: RecoveryEstimate | None = None
+        self._increments: list[np.ndarray | None] = []  # told with frames out of order
         self._debt = Debt()
 
     @one_at_a_time
-    def step(self, depth: np.ndarray, time: float | None = None) -> GuardedFrame:
-        """Return what becomes of a depth image `(H, W)` in metres (NaN = no measurement), taken at `time` (seconds)."""
+    def step(
+        self,
+        depth: np.ndarray,
+        time: float | None = None,
+        increment: np.ndarray | None = None,
+        gravity: np.ndarray | None = None,
+    ) -> GuardedFrame:
+        """Return what becomes of a depth image `(H, W)` in metres (NaN = no measurement), taken at `time` (seconds).
+
+        increment: motion `(6,)` since the last call, whatever became of that frame, as in `AnnealedLocalizer.step`.
+        gravity: as in `RecoveringLocalizer.step`. Raises `ValueError` for one of them that the localizer does not use.
+        """
         depth = checked_image(depth, self._camera)
+        self._require_used(increment=increment, gravity=gravity)
+        if increment is not None:
+            optical_increment(increment)  # refused here, before anything changes
         fault, n_missed = self._check.look(depth, time)
         missed = tuple(self._move() for _ in range(n_missed))
+        self._increments.append(increment)
         if fault == "out of order":
-            return GuardedFrame(fault, self._last, missed)
+            return GuardedFrame(fault, self._last, missed, self._recovery)
+        told = {"increment": _joined(self._increments), "gravity": gravity}
+        self._increments = []
         if fault is not None:
-            return GuardedFrame(fault, self._move(), missed)
-        self._last = self.localizer.step(depth)
-        return GuardedFrame(self._judged(depth), self._last, missed)
+            return GuardedFrame(fault, self._move(**told), missed, self._recovery)
+        self._advance(depth, **told)
+        return GuardedFrame(self._judged(depth), self._last, missed, self._recovery)
 
-    def _move(self) -> Estimate | AnnealedEstimate:
-        """Return the filter's estimate after a frame of which nothing is used."""
+    def _require_used(self, **told: np.ndarray | None) -> None:
+        """Raise `ValueError` if something was told that the localizer's `step` does not take."""
+        able = {"increment": "an AnnealedLocalizer or a RecoveringLocalizer", "gravity": "a RecoveringLocalizer"}
+        for name, value in told.items():
+            if value is not None and name not in inspect.signature(self.localizer.step).parameters:
+                raise ValueError(f"{type(self.localizer).__name__} uses no {name}. Leave it out, or guard {able[name]}")
+
+    def _advance(self, depth: np.ndarray, **told: np.ndarray | None) -> None:
+        """Give the filter an image `(H, W)` and what else is known, and keep its estimate."""
+        found = self.localizer.step(depth, **{name: value for name, value in told.items() if value is not None})
+        self._recovery = found if isinstance(found, RecoveryEstimate) else None
+        self._last = found if self._recovery is None else found.estimate
+
+    def _move(self, **told: np.ndarray | None) -> Estimate | AnnealedEstimate:
+        """Return the filter's estimate after a frame whose image is not used."""
         self._debt.add()
         self._agreements.append(being_lost.NOTHING_MEASURED)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", NoMeasurementWarning)  # the outcome says it
-            self._last = self.localizer.step(np.full(self._camera.shape, np.nan))
+            self._advance(np.full(self._camera.shape, np.nan), **told)
         return self._last
 
     def _judged(self, depth: np.ndarray) -> Outcome:
         """Return the outcome of a frame that was used: the annealed filter judges itself, the paper's is judged."""
         status = self._last.status
-        if not isinstance(self.localizer, AnnealedLocalizer):
+        if not isinstance(self._last, AnnealedEstimate):
             renderer = self.localizer.renderer
             measured = renderer.render_points(self._camera.points(depth))
             self._agreements.append(agreement(measured, renderer.render(self._last.state)[0]))
@@ -96,3 +138,15 @@ class GuardedLocalizer:
         if status == "tracked" and not self._debt.is_paid(good=True):
             return "doubtful"
         return status
+
+
+def _joined(increments: list[np.ndarray | None]) -> np.ndarray | None:
+    """Return one increment `(6,)` for several in a row; None if one of them is unknown."""
+    if any(one is None for one in increments):
+        return None
+    if len(increments) == 1:
+        return increments[0]
+    pose = np.eye(4)
+    for one in increments:
+        pose = retract(pose, one)
+    return local(np.eye(4), pose)

@@ -77,7 +77,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the filter. 0 when it reached the last frame, whatever it believes of the track."""
-    from course_lib.commands.localize_report import believed, localize_table, write_localized
+    from course_lib.commands.localize_report import believed, doubted_intrinsics, localize_table, write_localized
     from course_lib.depth_mcl.sequence import read_sequence
     from course_lib.experiments import recordings
     from course_lib.rendering.scene_map import SceneMap
@@ -115,6 +115,7 @@ def run(arguments: argparse.Namespace) -> int:
         "frames_at_fault": dict(Counter(fault for fault in result.faults if fault not in (None, "no return"))),
         **{f"frames_{status}": result.statuses.count(status) for status in ("tracked", "doubtful", "lost")},
         "believes": believed(result.frames, result.statuses),
+        **doubted_intrinsics(result.calibration, sequence.camera(arguments.near, arguments.far)),
         **(recordings.pose_error_summary(result, sequence) if sequence.has_poses else {}),
         "renders_per_frame": float(np.mean(result.renders)),
         "most_renders": int(result.renders.max()),

@@ -28,6 +28,18 @@ def believed(frames: list[int], statuses: list[str]) -> str:
     return f"lost {where} ({lost} of {total} frames; tracked {tracked}, doubtful {total - tracked - lost})"
 
 
+def doubted_intrinsics(calibration, camera) -> dict:
+    """Return what the images tell of the camera's intrinsics: numbers, and a sentence if it doubts them (else None)."""
+    if calibration is None:  # the paper's filter does not look
+        return {}
+    sentence, size = calibration.sentence(camera), np.array([100.0, camera.width, camera.height])
+    names, sigma = ("focal_length_percent", "cx_px", "cy_px"), np.sqrt(np.diag(calibration.covariance))
+    numbers = {name: float(value) for name, value in zip(names, calibration.correction * size, strict=True)}
+    numbers |= {f"{name}_sigma": float(value) for name, value in zip(names, sigma * size, strict=True)}
+    told = None if sentence is None else f"{sentence}: check intrinsics.txt"
+    return {"intrinsics_doubted": told, "intrinsics_off_by": {**numbers, "images": calibration.images}}
+
+
 def localize_table(s: dict) -> str:
     estimated = "all six degrees of freedom" if s["dof"] == "6" else "x, y and yaw"
     by = f"{s['n_particles']} particles" if s["method"] == "paper" else "the annealed filter"
@@ -51,6 +63,8 @@ def localize_table(s: dict) -> str:
     if s["frames_at_fault"]:
         told = ", ".join(f"{fault} {count}" for fault, count in sorted(s["frames_at_fault"].items()))
         lines.append(f"{sum(s['frames_at_fault'].values())} frames were at fault and not used: {told}")
+    if s.get("intrinsics_doubted"):
+        lines.append(s["intrinsics_doubted"])
     lines.append(f"{s['renders_per_frame']:.0f} renders and {s['ms_per_frame']:.0f} ms a frame")
     return "\n".join(lines)
 

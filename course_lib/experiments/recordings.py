@@ -13,6 +13,7 @@ from course_lib.beyond.guarded_frames import Fault, FrameCheck
 from course_lib.beyond.lost_and_found.free_space import FreeSpace
 from course_lib.beyond.lost_and_found.global_search import GlobalSearch, PoseCandidates
 from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
+from course_lib.beyond.six_dof.calibration import Calibration
 from course_lib.beyond.six_dof.localizer import AnnealedEstimate, AnnealedLocalizer
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.fallon import COARSE_HEIGHT, COARSE_WIDTH
@@ -52,6 +53,7 @@ class Run(NamedTuple):
     frames_without_measurement: int
     faults: tuple[Fault | None, ...] = ()
     """Why frames were not used (guarded_frames.py), None where they were; empty where nobody looked."""
+    calibration: Calibration | None = None  # What the annealed filter's images tell of the camera's intrinsics
 
 
 def system_noise(dof: Literal["6", "xyyaw"], position: float, rotation_deg: float) -> dict:
@@ -205,6 +207,7 @@ def run_localizer(
         ms_per_frame=1000 * seconds / count,
         frames_without_measurement=sum(e.status == "no measurement" and f in (None, "no return") for e, f in looked_at),
         faults=tuple(faults),
+        calibration=getattr(estimates[-1], "calibration", None),
     )
 
 

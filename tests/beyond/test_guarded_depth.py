@@ -1,11 +1,16 @@
 """A guarded filter: exactly the filter where nothing is wrong; where something is, it says so and comes back."""
 
+import pickle
+
 import numpy as np
 import pytest
 
 from course_lib.beyond.guarded_depth import OUTCOMES, GuardedLocalizer
+from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
 from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
+from course_lib.beyond.six_dof.poses import motion_between
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
+from course_lib.geometry import optical_pose
 from tests.rendering.shapes import SMALL
 
 START = np.array([-1.0, 0.3, -0.3, 0.0, 0.0, -0.4])
@@ -105,3 +110,73 @@ def test_after_long_trouble_one_good_frame_is_no_proof(renderer, walk):
     outcomes = [one.outcome for one in run(renderer, "annealed", frames)]
     assert "tracked" not in outcomes[10:18]
     assert outcomes[-1] == "tracked"
+
+
+def down(state):
+    return -optical_pose(state)[2, :3]
+
+
+@pytest.mark.parametrize("make", [AnnealedLocalizer, RecoveringLocalizer])
+def test_an_odometer_carries_it_through_every_trouble(renderer, walk, make):
+    """Black frames, one that never came and one that is late: the motion told with each of them counts once."""
+    true = walk[0].copy()
+    true[5:] += np.arange(1, 26)[:, None] * [-0.02, 0.05, 0, 0, 0, 0.06]  # a turn that no last motion foretells
+    images = [renderer.render(state)[0] for state in true]
+    frames = [(k, images[k], PERIOD * k) for k in range(13)]
+    for k in (5, 6, 7, 11):
+        frames[k] = k, np.full(SMALL.shape, np.nan), PERIOD * k
+    del frames[9]
+    frames[9] = 10, images[10], 0.2  # its clock is behind
+    localizer, before, seen = GuardedLocalizer(make(renderer, 100, seed=1), PERIOD), START, {}
+    localizer.initialize(START)
+    for k, image, time in frames:
+        seen[k] = localizer.step(image, time, increment=motion_between(before, true[k]), gravity=None)
+        before = true[k]
+    assert [seen[k].outcome for k in (5, 6, 7, 10, 11)] == ["no return"] * 3 + ["out of order", "no return"]
+    assert len(seen[11].missed) == 2
+    for k in (5, 6, 7, 11):
+        assert seen[k].estimate.state == pytest.approx(true[k], abs=0.03), "the odometer alone"
+    assert seen[12].estimate.state == pytest.approx(true[12], abs=0.03)
+
+
+def test_a_part_that_the_filter_does_not_use_is_refused_before_anything_changes(renderer, walk):
+    paper, annealed = (GuardedLocalizer(one, PERIOD) for one in filters(renderer).values())
+    for guarded in (paper, annealed):
+        guarded.initialize(START)
+    with pytest.raises(ValueError, match=r"MonteCarloLocalizer uses no increment.*AnnealedLocalizer"):
+        paper.step(walk[1][0], 0.0, increment=np.zeros(6))
+    with pytest.raises(ValueError, match=r"AnnealedLocalizer uses no gravity.*RecoveringLocalizer"):
+        annealed.step(walk[1][0], 0.0, gravity=down(START))
+    with pytest.raises(ValueError, match="increment must be finite"):
+        annealed.step(walk[1][0], 0.0, increment=np.full(6, np.nan))
+    assert annealed.step(walk[1][0], 0.0).outcome == "tracked", "the refused frame was not taken for the first one"
+
+
+@pytest.mark.slow
+def test_watching_odometry_gravity_and_recovery_in_one_object_also_from_a_pickle(renderer, walk):
+    """Followed, carried away while the driver repeats its last image, found elsewhere; a frame of noise on the way."""
+    localizer = GuardedLocalizer(RecoveringLocalizer(renderer, 100, seed=1, max_places=1_000), PERIOD)
+    localizer.initialize(START)
+    elsewhere = np.array([-1.5, -1.5, 0.5, 0.1, 0.3, 0.8]) + np.arange(9)[:, None] * [0.03, 0.02, 0.01, 0, 0, 0.02]
+    true = np.concatenate([walk[0][:6], np.repeat(walk[0][5:6], 4, axis=0), elsewhere])
+    images = renderer.render(true)
+    images[12] = np.random.default_rng(1).uniform(0.5, 6.0, SMALL.shape)
+    seen, before, copy = [], START, None
+    for k, (state, image) in enumerate(zip(true, images, strict=True)):
+        wheels = np.zeros(6) if k >= 6 else motion_between(before, state)  # they stand while it is carried
+        told, before = {"time": PERIOD * k, "increment": wheels, "gravity": down(state)}, state
+        seen.append(localizer.step(image, **told))
+        if copy is not None:
+            assert np.array_equal(copy.step(image, **told).estimate.state, seen[-1].estimate.state)
+        if k == 11:
+            copy = pickle.loads(pickle.dumps(localizer))
+    assert [one.outcome for one in seen[3:10]] == ["tracked"] * 3 + ["repeated"] * 4
+    assert seen[12].outcome == "noise"
+    modes = [one.recovery.mode for one in seen]
+    assert modes[:6] == ["following"] * 6
+    assert modes[10] == "searching"
+    assert "found again" in modes[11:]
+    assert seen[-1].outcome == "tracked"
+    assert seen[-1].estimate.state[:3] == pytest.approx(true[-1][:3], abs=0.03)
+    off = np.linalg.norm([one.estimate.state[:3] - state[:3] for one, state in zip(seen, true, strict=True)], axis=1)
+    assert not [k for k in range(len(seen)) if seen[k].outcome == "tracked" and off[k] > 0.1]

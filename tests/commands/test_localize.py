@@ -10,8 +10,11 @@ from course_lib.cli import main
 from course_lib.commands.localize_report import believed
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
 from course_lib.depth_mcl.sequence_files import read_tum
-from course_lib.geometry import rotation_to_z_up, state_from_optical_pose
+from course_lib.geometry import optical_pose, rotation_to_z_up, state_from_optical_pose
+from course_lib.rendering.renderer import DepthRenderer
+from tests.beyond.six_dof.test_calibration import STATES
 from tests.commands.conftest import rows_of
+from tests.rendering.shapes import SMALL, furnished_room
 
 
 def arguments(folder, sequence="wagon", **options):
@@ -129,6 +132,24 @@ def test_a_filter_that_is_wrong_from_the_start_says_so_and_ends_well(corridor_fo
     words = arguments(corridor_folder, dof="xyyaw", frames=5, particles=30, out=tmp_path, start="20 0 1.4 0 0 120")
     assert printed(*words).splitlines()[-1].startswith("lost from the first frame on (5 of 5 frames")
     assert {row["status"] for row in rows_of(tmp_path / "localize.csv")} == {"lost"}
+
+
+@pytest.mark.parametrize("factor", [1.0, 1.05])
+def test_a_wrong_focal_length_is_told_in_one_sentence(tmp_path, told, factor):
+    scene_map = furnished_room()
+    trimesh.Trimesh(scene_map.vertices, scene_map.faces, process=False).export(tmp_path / "map.ply")
+    with DepthRenderer(scene_map, SMALL) as renderer:
+        images = renderer.render(STATES)
+    k = SMALL.matrix @ np.diag([factor, factor, 1.0])
+    write_sequence(tmp_path / "run", k, list(range(len(STATES))), list(images), optical_pose(STATES), up="z")
+    summary = told(*arguments(tmp_path, "run", no_recover=True))
+    assert summary["intrinsics_off_by"]["images"] == len(STATES) // 3
+    if factor == 1.0:
+        assert summary["intrinsics_doubted"] is None
+        return
+    assert "the images fit a focal length of 5" in summary["intrinsics_doubted"]
+    assert summary["intrinsics_doubted"].endswith("%): check intrinsics.txt")
+    assert summary["intrinsics_off_by"]["focal_length_percent"] == pytest.approx(-5, abs=2)
 
 
 @pytest.mark.parametrize(

@@ -41,6 +41,7 @@ class RecoveringLocalizer:
     """
 
     def __init__(self, renderer: DepthRenderer, n_particles: int = 200, *, seed: int = 0, **search: object) -> None:
+        self.renderer = renderer
         self.localizer = AnnealedLocalizer(renderer, n_particles, seed=seed)
         self.searching = False
         self._search: GlobalSearch | None = None
@@ -53,7 +54,7 @@ class RecoveringLocalizer:
     def search(self) -> GlobalSearch:
         """The search, made at first use."""
         if self._search is None:
-            self._search = GlobalSearch(self.localizer.renderer, **self._of_search)
+            self._search = GlobalSearch(self.renderer, **self._of_search)
         return self._search
 
     @one_at_a_time

@@ -15,7 +15,7 @@ A frame goes through the paper's steps several times, each time closer:
     doubt      if the best agrees less with the map than frames did before, look once more with a wider cloud
     fuse       believe the prediction along what the image does not show (covariance.py), or all of it where the map
                does not hold the view
-    judge      say whether the pose is known (being_lost.py)
+    judge      say whether the pose is known (being_lost.py), and whether the intrinsics fit (calibration.py)
 
 Particles are camera-to-world matrices `(N, 4, 4)` here, optical convention, and their noise is drawn in the tangent
 space, which has no gimbal lock. Estimates are states, as `MonteCarloLocalizer` gives them.
@@ -36,6 +36,7 @@ from course_lib.beyond.being_lost import (
     is_known,
     judge_refined,
 )
+from course_lib.beyond.six_dof.calibration import Calibration, CalibrationCheck
 from course_lib.beyond.six_dof.covariance import (
     PREDICTED,
     fused,
@@ -84,6 +85,7 @@ CLEAR = 0.05  # share of pixels measured behind the map up to which a pose that 
 SEEN = 0.03  # of raw score: what moving a pose along directions that the image does not show may cost
 RIVAL_WITHIN = 0.06  # of raw score: a pose that fits less is no rival of the best
 RIVAL_APART = np.array([0.15, np.deg2rad(10.0)])  # metres, radians
+CHECKED = 3  # of so many tracked frames one tells about the intrinsics, to save time
 
 
 class AnnealedEstimate(NamedTuple):
@@ -100,6 +102,7 @@ class AnnealedEstimate(NamedTuple):
     agreement: Agreement  # How the measured image agrees with the map as seen from the state.
     layers: tuple[Tempered, ...]  # Weights, sharpness and effective sample size of every layer, in order.
     renders: int  # How many images were drawn.
+    calibration: Calibration  # What the tracked images so far tell of the camera's intrinsics.
 
 
 class _Found(NamedTuple):
@@ -153,6 +156,7 @@ class AnnealedLocalizer:
         self._new_prediction = prediction
         self._prediction: MotionPrediction | None = None
         self._judge = TrackJudge()
+        self._calibration, self._tracked = CalibrationCheck(), 0  # of all frames, because a camera keeps its intrinsics
         self._pose: np.ndarray | None = None  # the last estimate, and how far off it may be
         self._covariance: np.ndarray | None = None
         self._views: list[View] | None = None  # of the last image
@@ -187,7 +191,23 @@ class AnnealedLocalizer:
         image_says = self._judge.judge_image(found.agreement)
         found, image_says = self._fuse(found, image_says, spread, measured)
         status = self._judge.judge(image_says, found.agreement, self._covariance, bool(found.rivals))
-        return self._estimate(found, status)
+        return self._estimate(found, status, self._calibrated(found.pose, status))
+
+    def _calibrated(self, pose: np.ndarray, status: TrackStatus) -> np.ndarray:
+        """Return the covariance `(6, 6)`, wider where the intrinsics are doubted; check them with some tracked frames.
+
+        The wider covariance is not kept, because this error is the same in the next frame.
+        """
+        self._tracked += status == "tracked"
+        is_checked = status == "tracked" and self._tracked % CHECKED == 0
+        doubted = self._calibration.estimate().doubted.any()
+        if not (is_checked or doubted):
+            return self._covariance
+        middle = self.levels[1]
+        images = middle.measured, middle.draw(pose[None])[0], middle.renderer.camera
+        if is_checked:
+            self._calibration.add(*images)
+        return self._covariance + self._calibration.pose_covariance(*images) if doubted else self._covariance
 
     def _measured_motion(self, depth: np.ndarray, told: MeasuredMotion | None) -> MeasuredMotion | None:
         """Return the motion since the last image, of both images and what an odometer told; remember this image."""
@@ -328,13 +348,13 @@ class AnnealedLocalizer:
         poses = self._prediction.draw(self.n_particles, spread, self.rng, told)
         before = self._prediction.pose
         pose = before if told is None else retract(before, told.motion)
-        self._prediction.not_found(pose, spread)
+        self._prediction.not_found(pose, spread, measured=told)
         self._views = None if told is not None else self._views  # else the next image shows the motion since this one
         self._covariance = self._predicted_covariance(local(before, pose), spread, told)
         found = _Found(pose, np.nan, NOTHING_MEASURED, poses, (temper(np.zeros(len(poses)), len(poses)),))
-        return self._estimate(found, "no measurement")
+        return self._estimate(found, "no measurement", self._covariance)
 
-    def _estimate(self, found: _Found, status: str) -> AnnealedEstimate:
+    def _estimate(self, found: _Found, status: str, covariance: np.ndarray) -> AnnealedEstimate:
         self._pose = found.pose
         state, particles = state_from_optical_pose(found.pose), state_from_optical_pose(found.particles)
         w = found.layers[-1].weights
@@ -347,8 +367,9 @@ class AnnealedLocalizer:
             particles,
             w,
             status,
-            in_world_and_body(self._covariance, found.pose),
+            in_world_and_body(covariance, found.pose),
             found.agreement,
             found.layers,
             sum(level.renders for level in self.levels),
+            self._calibration.estimate(),
         )
