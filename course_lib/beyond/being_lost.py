@@ -139,7 +139,7 @@ class TrackJudge:
     def __init__(self) -> None:
         self._usual_support: float | None = None
         self._debt = Debt()
-        self._known_again = CONFIRMED  # frames since the last one whose pose was not known
+        self._lost_for = self._known_for = 0  # frames of the last loss without a known pose, and with one since
 
     def doubts(self, agreement: Agreement) -> bool:
         """Return whether a frame agrees clearly less than usual."""
@@ -153,17 +153,18 @@ class TrackJudge:
     def judge(self, image: TrackStatus, agreement: Agreement, covariance: np.ndarray, has_rivals: bool) -> TrackStatus:
         """Return a frame's status; called once per frame. image: `judge_image` of it. covariance: `(6, 6)`.
 
-        After lost frames it stays lost for `CONFIRMED` frames, and is doubtful at best until the debt of good frames
-        without a rival is paid.
+        After lost frames it stays lost for as many frames as it was lost, at least `CONFIRMED`, and is doubtful until
+        the debt of good frames without a rival is paid.
         """
         status = image if is_known(covariance) else "lost"
         if status == "lost":
             self._debt.add()
-            self._known_again = 0
+            self._lost_for, self._known_for = self._lost_for + 1, 0
         else:
-            self._known_again += 1
+            self._known_for += 1
             if not self._debt.is_paid(status == "tracked" and not has_rivals):
-                status = "doubtful" if self._known_again > CONFIRMED else "lost"
+                status = "doubtful" if self._known_for >= max(self._lost_for, CONFIRMED) else "lost"
+            self._lost_for *= status == "lost"
         if status == "tracked" or self._usual_support is None:
             usual, support = self._usual_support, agreement.support
             self._usual_support = support if usual is None else (1 - MEMORY) * usual + MEMORY * support

@@ -86,3 +86,9 @@ def test_a_good_image_of_an_unknown_pose_is_lost_and_after_lost_frames_as_many_g
         covariance = SURE.copy()
         covariance[axis, axis] = (share * being_lost.KNOWN[axis // 3]) ** 2
         assert told(FITS, covariance=covariance) == [status]
+
+
+def test_doubtful_frames_end_a_loss_after_as_many_frames_as_it_had_but_are_never_called_tracked():
+    after = told(FITS, *[BEHIND_THE_MAP] * 5, *[POOR] * 8)[6:]
+    assert after == ["lost"] * 4 + ["doubtful"] * 4
+    assert told(FITS, BEHIND_THE_MAP, *[POOR] * 3)[-3:] == ["lost", "lost", "doubtful"]

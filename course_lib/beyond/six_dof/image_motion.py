@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.beyond.being_lost import MIN_PIXELS
-from course_lib.beyond.six_dof.covariance import RIVAL_SCALE, SCALE, fused, information, with_rivals
+from course_lib.beyond.six_dof.covariance import PREDICTED, RIVAL_SCALE, SCALE, fused, information, with_rivals
 from course_lib.beyond.six_dof.poses import distinct, local, retract
 from course_lib.beyond.six_dof.prediction import MeasuredMotion, Rival
 from course_lib.beyond.six_dof.refinement import NormalEquations, solve, surface_normals
@@ -171,14 +171,11 @@ def image_motion(
         poses, scores, far = poses[kept], raw[kept], far[kept]
     has_partner, n, r = paired(old, points, poses[0])
     shown = information(points[has_partner], n, new.normals[has_normal][has_partner], r)
-    covariance, gain = fused(np.diag(spread**2), PIXELS * shown)
+    covariance, gain = fused(np.diag((PREDICTED * spread) ** 2), PIXELS * shown)
     covariance += np.diag(np.repeat(FLOOR, 3) ** 2)
     fused_pose = retract(predicted, gain @ local(predicted, poses[0]))
     score, share, agreeing = (float(x[0]) for x in _scores(old, points, fused_pose[None]))
-    if score < scores[0] - CLEARLY:  # the images show more than their linear equations do
-        fused_pose = poses[0]
-        _, share, agreeing = (float(x[0]) for x in _scores(old, points, fused_pose[None]))
-    if share < MIN_PAIRED or agreeing < MIN_AGREEING:
+    if share < MIN_PAIRED or agreeing < MIN_AGREEING or score < scores[0] - CLEARLY:
         return None
     evidence = scores - RIVAL_SCALE * np.minimum(far, FARTHEST) / 2
     rivals = [Rival(pose, min(float(e - evidence[0]), 0.0)) for pose, e in zip(poses[1:], evidence[1:], strict=True)]
