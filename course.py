@@ -32,7 +32,7 @@ APT = "apt-get install -y --no-install-recommends "
 OPENGL = "libegl1 libgl1-mesa-dri libgl1"
 # Python's variables that say how it runs. The others (PYTHONPATH, PYTHONHOME ...) say which code, and are dropped.
 KEPT = "DONTWRITEBYTECODE FAULTHANDLER HASHSEED IOENCODING PYCACHEPREFIX UNBUFFERED UTF8".split()
-HELP = {"-h", "--help", "help"}
+HELP = {"-h", "--help", "help", "--version"}
 
 
 class SetupError(Exception):
@@ -51,10 +51,11 @@ def main(arguments):
         )
         return 1
     try:
-        ready = bool(arguments) and arguments[0] not in HELP and why_not_ready() is None
-        if not ready and (not arguments or HELP & set(arguments)):
-            print(usage(), end="")
-            return 0 if arguments else 2
+        if not arguments or arguments[0] in HELP:
+            return command_line().main(arguments)
+        ready = why_not_ready() is None
+        if not ready and HELP & set(arguments):
+            return command_line().main(["--help"])
         if not ready:
             set_up()
         command = [PYTHON, "-P", "-m", "course_lib", *arguments]
@@ -71,13 +72,11 @@ def main(arguments):
     return 1
 
 
-def usage():
-    """The list of commands. course_lib.cli imports only the standard library, so it works before .venv is there."""
+def command_line():
+    """course_lib.cli. It imports only the standard library, so it works before .venv is there."""
     sys.path.append(ROOT)
     sys.dont_write_bytecode = True  # help leaves no file behind
-    from course_lib import cli
-
-    return cli.usage()
+    return importlib.import_module("course_lib.cli")
 
 
 def clean_environment():

@@ -12,4 +12,4 @@ classroom                handing out and grading
 commands, cli            `python -m course_lib`, normally reached through `python3 course.py`
 """
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"

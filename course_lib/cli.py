@@ -19,6 +19,8 @@ from difflib import get_close_matches
 from types import ModuleType
 from typing import NoReturn
 
+from course_lib import __version__
+
 # For whom -> name as typed -> (module of course_lib.commands, one line for the list of commands).
 GROUPS: dict[str, dict[str, tuple[str, str]]] = {
     "learn": {
@@ -74,8 +76,14 @@ def usage() -> str:
     for group, commands in GROUPS.items():
         lines += ["", f"{group}:", *(f"  {name:<13}  {line}" for name, (_, line) in commands.items())]
     lines += ["", "Options of one command: python3 course.py COMMAND --help"]
+    lines += ["Version of the course: python3 course.py --version"]
     lines += ["The first call sets up .venv: a download of about 450 MB, 2.0 GB on disk, one or a few minutes."]
     return "\n".join(lines) + "\n"
+
+
+def version() -> str:
+    """Return the version of the course. Version 1.0.0 is told as 1.0."""
+    return __version__.removesuffix(".0")
 
 
 def find_command(words: list[str]) -> tuple[str, list[str]] | None:
@@ -92,6 +100,9 @@ def main(words: list[str]) -> int:
     if not words or words[0] in ("-h", "--help", "help"):
         print(usage(), end="")
         return 0 if words else EXIT_BAD_INPUT
+    if words[0] == "--version":
+        print(version())
+        return 0
     found = find_command(words)
     if found is None:
         print(f"error: there is no command {' '.join(words[:2])!r}{what_instead(words)}", file=sys.stderr)
@@ -109,7 +120,8 @@ def what_instead(words: list[str]) -> str:
     # A higher bar for two words: the first alone makes demo corridor and demo room alike.
     like = meant(" ".join(words[:2]), COMMANDS, 0.8) if len(words) > 1 else ""
     like = like or (f"; did you mean: {', '.join(longer)}?" if longer else meant(words[0], COMMANDS))
-    return like or f"; the commands are: {', '.join(COMMANDS)}"
+    groups = (f"to {group}: {', '.join(commands)}" for group, commands in GROUPS.items())
+    return like or f"; the commands are, {'; '.join(groups)}"
 
 
 def meant(word: str, names: Iterable[str], cutoff: float = 0.6) -> str:

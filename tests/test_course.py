@@ -6,10 +6,12 @@ import os
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 
 import pytest
 
+from course_lib import __version__
 from course_lib.cli import usage
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -45,8 +47,8 @@ def copy(tmp_path):
     (folder / "environment.txt").write_text("# nothing\n")
     (folder / "pyproject.toml").write_text(PYPROJECT)
     (folder / "backend.py").write_text(BACKEND)
-    (folder / "course_lib" / "__init__.py").touch()
-    (folder / "course_lib" / "cli.py").write_bytes((ROOT / "course_lib" / "cli.py").read_bytes())
+    for name in ("__init__.py", "cli.py"):
+        (folder / "course_lib" / name).write_bytes((ROOT / "course_lib" / name).read_bytes())
     (folder / "course_lib" / "__main__.py").write_text(HANDED_OVER)
     return folder
 
@@ -86,6 +88,13 @@ def test_help_before_any_set_up_lists_the_commands_and_installs_nothing(copy, ar
     done = call(copy, *arguments)
     assert (done.returncode, done.stdout) == (code, usage())
     assert not (copy / ".venv").exists()
+
+
+def test_the_version_is_told_before_any_set_up_and_the_packages_is_the_same(copy):
+    done = call(copy, "--version")
+    assert (done.returncode, done.stdout) == (0, "1.0\n")
+    assert not (copy / ".venv").exists()
+    assert __version__ == tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["version"]
 
 
 @pytest.mark.slow

@@ -1,5 +1,6 @@
 """README.md and RESULTS.md quote what the commands print: tables, numbers over seeds; the README's code runs."""
 
+import importlib
 import json
 import re
 from pathlib import Path
@@ -139,6 +140,15 @@ def test_the_readme_is_a_front_page_whose_numbers_links_and_commands_are_right()
     assert [call for call in calls if find_command(call.split()) is None] == []
     for target in re.findall(r"\]\(([^)#]+)\)", README + RESULTS):
         assert target.startswith("http") or (ROOT / target).exists(), target
+
+
+def test_the_examples_of_the_readme_fit_their_commands_and_read_shipped_files():
+    calls = re.findall(r"^    python3 course\.py ((?:localize|locate|stereo) .*)$", README, re.M)
+    assert [call.split()[0] for call in calls] == ["localize", "locate", "stereo"]
+    for call in calls:
+        name, rest = find_command(call.split())
+        cli.parse(name, importlib.import_module(f"course_lib.commands.{name}"), rest)
+        assert [word for word in rest if word.startswith("data/") and not (ROOT / word).exists()] == []
 
 
 def test_the_snippets_of_the_readme_need_no_file_follow_an_own_mesh_and_ask_an_own_detector(monkeypatch, tmp_path, rng):

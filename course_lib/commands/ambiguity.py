@@ -10,6 +10,8 @@ from course_lib.commands import arguments as options
 from course_lib.commands.output import print_and_write, progress_bar
 
 SURE = 0.8  # the lowest confidence of an answer, as in `SemanticLocalizer`
+OUT = Path("results/ambiguity")
+OUT_HELP = f"write ambiguity.json and a picture for each matcher here (default: {OUT.as_posix()})"
 MIN_SHARE = 0.001  # of the belief, below which a pair is not listed
 
 
@@ -21,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--step", type=float, default=0.5, metavar="METRES", help=told)
     options.add_number(parser, "--draws", "views drawn at each place (default: 4)", 4)
     options.add_number(parser, "--seed", "seed of the views (default: 1)", 1)
-    options.add_results(parser, "for the pictures and numbers", Path("results/ambiguity"))
+    options.add_results(parser, OUT_HELP, OUT)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -1,5 +1,8 @@
 """`ambiguity`: a symmetric room is not sure of itself."""
 
+import pytest
+
+from course_lib.cli import main
 from tests.beyond.look_alikes.look_alike_scene import SYMMETRIC
 
 
@@ -17,3 +20,9 @@ def test_what_is_confused_is_told_with_its_places(tmp_path, told):
     assert one["confused"][0]["places_m"] == [list(SYMMETRIC.positions[k]) for k in (first, second)]
     files = {path.name for path in (tmp_path / "out").glob("[!.]*")}
     assert files == {"ambiguity.json", "ambiguity_consistent.png", "ambiguity_greedy.png", "run.json"}
+
+
+def test_help_says_where_it_writes(capsys):
+    with pytest.raises(SystemExit):
+        main(["ambiguity", "--help"])
+    assert "(default: results/ambiguity)" in " ".join(capsys.readouterr().out.split())

@@ -114,7 +114,10 @@ def test_words_that_do_not_fit_are_told_in_one_sentence_that_says_where_the_opti
             ["make-data", "room"],
             "there is no command 'make-data room' any more; it is a tool now: .venv/bin/python -m to",
         ),
-        (["zzzzzz"], "there is no command 'zzzzzz'; the commands are: lab, "),
+        (
+            ["zzzzzz"],
+            "there is no command 'zzzzzz'; the commands are, to learn: lab, progress, check, test; to use: localize, ",
+        ),
     ],
 )
 def test_a_misspelt_command_is_told_with_the_one_that_may_be_meant(words, told, capsys):

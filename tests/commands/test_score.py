@@ -40,6 +40,11 @@ def test_a_file_that_does_not_fit_is_named(scored, tmp_path, capsys, text, words
     assert not scored
 
 
+def test_a_file_that_is_not_there_is_said_to_be_missing(tmp_path, capsys):
+    assert scoring.main(["P1", str(tmp_path / "nofile")]) == 2
+    assert "nofile is missing" in capsys.readouterr().err
+
+
 def test_the_command_runs_it_in_a_process_of_its_own(monkeypatch):
     ran = []
     monkeypatch.setattr("subprocess.call", lambda words: ran.append(words) or 7)

@@ -1,6 +1,7 @@
 """The shipped room: as large as promised, and an honest experiment."""
 
 from itertools import combinations
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,7 +9,10 @@ import pytest
 from course_lib.geometry import wrap_angle
 from course_lib.simulation.room.experiment_room import make_experiment_room
 from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS, MEASUREMENT_PLACES
+from course_lib.spherical_stereo.recording import read_stereo_boxes
 from course_lib.spherical_stereo.semantic_map.association import hue_difference
+
+DATA = Path(__file__).resolve().parents[2] / "data" / "room"
 
 
 def test_twenty_pairs_stand_at_the_papers_places_at_both_heights(recordings):
@@ -40,3 +44,14 @@ def test_the_map_was_surveyed_not_copied(semantic_map):
     true = np.array([[thing.x, thing.y] for thing in make_experiment_room().objects])
     errors = np.linalg.norm(semantic_map.positions - true, axis=1)
     assert 0.002 < np.median(errors) < 0.03
+
+
+def test_the_example_boxes_are_the_whole_objects_of_one_pair(recordings):
+    """The README's `stereo` reads them; they stand in data/room/README.md."""
+    boxes = read_stereo_boxes(DATA / "example_boxes.json")
+    pair = next(pair for pair in recordings[2].pairs if pair.name == "03_b")
+    assert boxes.size == pair.size
+    for listed, seen in ((boxes.upper, pair.upper_objects), (boxes.lower, pair.lower_objects)):
+        whole = {(one.label, *one.visible_box) for one in seen if one.visible_fraction > 0.9}
+        assert len(listed) == 12
+        assert {(one.label, *one.box) for one in listed} <= whole

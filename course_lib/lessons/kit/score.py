@@ -43,6 +43,8 @@ def main(words: list[str]) -> int:
 
 def handed_in(project: Project, path: Path) -> Callable:
     """Return the project's function in a file. Raises `ValueError` if there is none, or if the file does not run."""
+    if not path.exists():
+        raise ValueError(f"{path} is missing. Give the path of a Python file or a notebook")
     if path.suffix not in (".py", ".ipynb") or not path.is_file():
         raise ValueError(f"{path} is neither a Python file nor a notebook")
     names: dict = {"__name__": "handed_in", "__file__": str(path)}
