@@ -90,7 +90,7 @@ def test_the_table_with_intervals_is_what_the_sweep_prints_of_its_stored_rows(tm
 
 
 SIX_DEGREES = ["corridor/kitchen_six_degrees", "corridor/kitchen_icp", "corridor/kitchen_ablation", "corridor/hand_1-5"]
-SIX_DEGREES += ["room/walk_11-20"]
+SIX_DEGREES += ["corridor/hololens_rooms", "room/walk_11-20"]
 
 
 @pytest.mark.parametrize("name", SIX_DEGREES)
