@@ -4,18 +4,10 @@ import ast
 import builtins
 import re
 
-import pytest
-
-from tools.pace import STATED, core_and_all, tags
+from tools.pace import core_and_all, tags
 
 MAX_CORE_MINUTES = 50
 HINTS = {0: 3, 8: 2, 15: 1}  # from this lesson on, for an exercise that is no challenge
-
-
-@pytest.fixture(autouse=True)
-def only_lessons_with_a_core_path(lesson):
-    if not STATED.search(lesson.cells[0].source):
-        pytest.skip("its core path is not marked yet")
 
 
 def test_the_first_cell_states_the_minutes_of_the_model(lesson):
