@@ -40,7 +40,10 @@ MILLISECONDS = 250
 
 
 def frame_picture(plan, true, measured, particles, w, best, number) -> Image.Image:
-    """Return one picture: the cloud from above, the measured image, and the best particle's image."""
+    """Return one picture: the cloud from above, the measured image, and the best particle's image.
+
+    plan: `(M, 2)` points of the walls. true: `(6,)`. measured, best: `(H, W)` depth. particles: `(N, 6)`. w: `(N,)`.
+    """
     figure = Figure(figsize=(9.6, 2.6), dpi=90, layout="constrained")
     above, seen, simulated = figure.subplots(1, 3, width_ratios=[3.2, 1, 1])
     order = np.argsort(w)

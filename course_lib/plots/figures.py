@@ -1,8 +1,8 @@
 """One style for every figure that lessons and commands draw.
 
 Colours are those of Okabe and Ito ("Color Universal Design", 2008), for readers with any common form of colour
-blindness; marker and line style change along with the colour. Depth is coloured with plasma, which is clear of grey and
-as safe. Figures are drawn with Agg and never through matplotlib's global state.
+blindness; marker and line style change along with the colour. Depth is coloured with plasma, whose steps are easy to
+tell apart. Figures are drawn with Agg and never through matplotlib's global state.
 """
 
 from collections.abc import Sequence

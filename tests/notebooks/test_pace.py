@@ -58,6 +58,10 @@ def test_figures_are_numbered_in_order_and_the_text_refers_to_them(lesson):
     captions = re.findall(r"<em>Figure (\w+)\.(\d+)\. ", "".join(lesson.html))
     assert captions == [(number, str(k + 1)) for k in range(len(captions))]
     assert len(captions) >= core_and_all(lesson.notebook)[1].figures
+    for _, k in captions:
+        assert re.search(rf"[Ff]igures? (?:\w+\.\d+(?:,| and|, and) )*{number}\.{k}\b", lesson.markdown), (
+            f"Figure {number}.{k}"
+        )
 
 
 def test_what_a_paper_says_is_quoted_in_its_own_words(lesson):
