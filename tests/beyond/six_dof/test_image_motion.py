@@ -91,3 +91,20 @@ def test_it_is_not_believed_without_pixels_without_overlap_or_between_two_places
     corner = np.full(SMALL.shape, np.nan)
     corner[:20, :14] = here[:20, :14]
     assert image_motion(views(corner), views(here), REST, SPREAD) is None, f"less than {module.MIN_PAIRED} pair"
+
+
+def test_a_guess_that_was_right_so_far_makes_motions_along_a_bare_wall_unlikely(rng):
+    """Slides along the wall explain the images as well. Their distance from a sure guess decides."""
+    with DepthRenderer(wall(1.5), SMALL) as bare:
+        surely = np.repeat([0.015, 0.017], 3)
+        motion = np.array([0.05, 0.0, 0.05, 0.0, 0.0, 0.0])
+        measured = between(bare, motion, rng, optical_pose(REST), motion, surely)
+    assert np.sqrt(np.diag(measured.covariance)).max() < 0.02
+
+
+def test_of_an_image_that_hardly_measures_more_pixels_are_taken():
+    full = np.full(SMALL.shape, 2.0)
+    sparse = full.copy()
+    sparse[:, SMALL.width // 8 :] = np.nan
+    count = [np.isfinite(View.of(depth, SMALL, 300).points[..., 2]).sum() for depth in (full, sparse)]
+    assert count[1] > 0.5 * count[0]
