@@ -98,6 +98,7 @@ def _lost(parser: argparse.ArgumentParser) -> None:
     _seeds(parser, "a trial each: recording, kidnapping, start", "1-3")
     told = "instead of the corridor, a recording of this folder with its truth and, in map.ply, its map"
     options.add_folder(parser, "--recording", told)
+    options.add_flag(parser, "--rooms", "instead of the corridor, a generated room for each seed")
     options.add_folder(parser, "--data", "corridor data (default: data/corridor)")
 
 
