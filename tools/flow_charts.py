@@ -15,14 +15,13 @@ from course_lib.files import atomic_write
 from course_lib.paths import REPOSITORY
 
 NOTEBOOKS = REPOSITORY / "notebooks"
-WIDTH, HEIGHT, GAP, MARGIN = 380, 58, 26, 44  # of the chart, of a box, between boxes, beside boxes: pixels
+WIDTH, HEIGHT, GAP, MARGIN = 420, 58, 26, 42  # of the chart, of a box, between boxes, beside boxes: pixels
 STYLE = (
-    "text { font: 15px 'DejaVu Sans', Verdana, sans-serif; fill: #111; text-anchor: middle }"
+    "text { font: 14.5px 'DejaVu Sans', Verdana, sans-serif; fill: #111; text-anchor: middle }"
     " .note { font-size: 12.5px; fill: #444 } rect { fill: #e8f1f8; stroke: #0072b2; stroke-width: 1.6; rx: 7 }"
     " a:hover rect, a:focus rect { fill: #ffe9b8 } .arrow { stroke: #444; stroke-width: 1.8; fill: none }"
 )
-# name -> (title, step to which the last one leads back: the filter goes round for every image)
-CHARTS = {
+CHARTS = {  # name -> title, and the step to which the last one leads back
     "flow_depth_mcl": ("Paper 1, figure 1: the steps of the particle filter", 1),
     "flow_spherical_stereo": ("Paper 2, figure 2: from two panoramas to a pose", None),
 }
@@ -38,7 +37,7 @@ def steps(column: int) -> list[tuple[str, str, str]]:
 def chart(title: str, rows: list[tuple[str, str, str]], back_to: int | None) -> str:
     """Return the SVG of one chart."""
     height = 40 + len(rows) * (HEIGHT + GAP)
-    middle, right = WIDTH / 2, WIDTH - MARGIN
+    middle, right, tops = WIDTH / 2, WIDTH - MARGIN, range(40, height, HEIGHT + GAP)
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" role="img" aria-label="{title}">',
         f"<title>{title}</title><style>{STYLE}</style>",
@@ -47,7 +46,6 @@ def chart(title: str, rows: list[tuple[str, str, str]], back_to: int | None) -> 
         f'<rect x="0" y="0" width="{WIDTH}" height="{height}" style="fill: #fff; stroke: none"/>',
         f'<text x="{middle}" y="24" class="note">{title}</text>',
     ]
-    tops = [40 + k * (HEIGHT + GAP) for k in range(len(rows))]
     for top, below, (words, lesson, note) in zip_longest(tops, tops[1:], rows):
         small = f"lesson {lesson[:2]}" + f" · {note}" * bool(note)
         parts.append(
@@ -60,8 +58,8 @@ def chart(title: str, rows: list[tuple[str, str, str]], back_to: int | None) -> 
     if back_to is not None:
         start, end = tops[-1] + HEIGHT / 2, tops[back_to] + HEIGHT / 2
         parts.append(f'<path class="arrow" marker-end="url(#head)" d="M{right} {start}h22V{end}h-20"/>')
-        x, y = right + 34, (start + end) / 2
-        parts.append(f'<text class="note" transform="translate({x} {y}) rotate(90)" dy="4">next image</text>')
+        turned = f"translate({right + 34} {(start + end) / 2}) rotate(90)"
+        parts.append(f'<text class="note" transform="{turned}" dy="4">next image</text>')
     return "\n".join([*parts, "</svg>", ""])
 
 
