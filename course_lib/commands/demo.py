@@ -90,7 +90,7 @@ def _walk(parser: argparse.ArgumentParser) -> None:
     options.add_number(parser, "--seed", "seed of room and walk (default: 1)", 1)
     _seeds(parser, "several rooms instead, told together")
     options.add_text(parser, "--every", "NUMBERS", "thin the recordings: 1,2,4 runs each (default: 1,2,4)", "1,2,4")
-    told = "with commas: annealed, paper, floor, or the annealed filter with one idea switched off, as in compare"
+    told = "with commas: annealed, recovering (it searches when lost), paper, floor, others as in compare"
     options.add_text(parser, "--methods", "NAMES", f"{told} (default: annealed,floor)", "annealed,floor")
 
 
