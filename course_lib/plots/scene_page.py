@@ -18,12 +18,12 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from course_lib.files import atomic_write
-from course_lib.plots.scenes import SceneError
+from course_lib.plots.scenes import SceneError, draws
 
 if TYPE_CHECKING:
     import pyvista
 
-CURE = 'pip install "pyvista[jupyter]"'
+CURE = "pip install trame-vtk"
 
 _ADDRESS = re.compile(r"""(?<=["{])[0-9A-Fa-f]{16}\b""")  # after a quote, or as instance:${...}; never a fraction
 _SCRIPT = re.compile(r'<script type="module">(.*?)</script>', re.DOTALL)
@@ -107,7 +107,8 @@ def _trame(module: str) -> ModuleType:
 def _scene_of(plotter: pyvista.Plotter) -> dict:
     """The parts of a plotter's scene and the arrays in them, as the viewer reads them."""
     serializers = _trame("modules.vtk.serializers")
-    plotter.render()
+    if draws(plotter):
+        plotter.render()
     window = plotter.render_window
     camera = window.GetRenderers().GetFirstRenderer().GetActiveCamera()
     serializers.initialize_serializers()

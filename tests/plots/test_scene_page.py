@@ -8,9 +8,10 @@ import zlib
 
 import numpy as np
 import pytest
+import pyvista
 
 from course_lib.commands.output import write_scene
-from course_lib.plots import scenes
+from course_lib.plots import scene_page, scenes
 from course_lib.plots.scene_page import ScenePageError, page_html
 from course_lib.rendering.renderer import OpenGLError
 
@@ -50,6 +51,13 @@ def test_the_same_scene_gives_the_same_bytes_also_in_another_process(page, tmp_p
     code = f"import runpy; page = runpy.run_path({__file__!r})['axes_page']; open('page', 'w').write(page())"
     subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True)
     assert (tmp_path / "page").read_text() == page
+
+
+def test_without_opengl_the_page_is_the_same_and_only_the_picture_is_missing(page, monkeypatch):
+    monkeypatch.setattr(scene_page, "draws", lambda plotter: False)
+    monkeypatch.setattr(pyvista.Plotter, "render", lambda *_, **__: None)
+    assert axes_page() == page
+    assert scenes.draws(scenes.new_plotter())
 
 
 @pytest.mark.parametrize("kind", [OpenGLError, ScenePageError, ImportError])
