@@ -115,7 +115,7 @@ def why_not_ready(lock):
     if "folder" in changed or "python" in changed or not os.path.exists(PYTHON):
         return "The .venv here was made in another folder or by another Python: making it anew.", True, lock
     if "lock" in changed and "lock" in found:
-        return "The tests need more packages than the lessons: adding them, about 100 MB.", False, lock
+        return "The tests need more packages than the lessons: adding them, about 120 MB.", False, lock
     return (lock + " or pyproject.toml has changed: bringing .venv up to date.", False, lock) if changed else None
 
 

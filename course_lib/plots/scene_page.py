@@ -18,7 +18,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from course_lib.files import atomic_write
-from course_lib.plots.scenes import SceneError, draws
+from course_lib.plots.scenes import SceneError
 
 if TYPE_CHECKING:
     import pyvista
@@ -107,14 +107,15 @@ def _trame(module: str) -> ModuleType:
 def _scene_of(plotter: pyvista.Plotter) -> dict:
     """The parts of a plotter's scene and the arrays in them, as the viewer reads them."""
     serializers = _trame("modules.vtk.serializers")
-    if draws(plotter):
-        plotter.render()
     window = plotter.render_window
-    camera = window.GetRenderers().GetFirstRenderer().GetActiveCamera()
+    renderer = window.GetRenderers().GetFirstRenderer()
+    camera = renderer.GetActiveCamera()
+    renderer.UpdateLightsGeometryToFollowCamera()  # as drawing does, which needs OpenGL
     serializers.initialize_serializers()
     context = serializers.SynchronizationContext()
     context.set_ignore_last_dependencies(True)
     scene = serializers.serialize(None, window, 1, context, 1)
+    scene["type"] = "vtkEGLRenderWindow"  # on every system
     scene["mtime"] = 1  # VTK counts the changes of all that it ever drew
     scene["extra"] = {
         "vtkRefId": serializers.reference_id(window),
