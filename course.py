@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 """Set the course up and start it: `python3 course.py lab`, `python3 course.py test`.
 
-The standard library only. The first call makes `.venv` from environment.txt and installs course_lib into it. Every call
-then hands over to `python -m course_lib` in `.venv`. What is said on the way goes to standard error, so that `--json`
-output stays clean. `.venv/course-made` says that the folder is ours: a `.venv` without it is never touched.
-`.venv/course-ready.json` is written last and says what was installed: without it `.venv` is made anew.
-Even Python 3.6 must be able to read this file, because it has to get as far as saying that it is too old.
+The standard library only. The first call makes `.venv` from environment.txt with course_lib. `test` adds the rest
+of environment-test.txt. Every call then hands over to `python -m course_lib` there. What it says goes to stderr.
+A `.venv` without `course-made` is not ours and never touched. `course-ready.json` is written last: without it, `.venv`
+is made anew. Even Python 3.6 must be able to read this file, so that it can say that it is too old.
 """
 
 import os
@@ -29,7 +28,8 @@ VENV = os.path.join(ROOT, ".venv")
 PYTHON = os.path.join(VENV, "Scripts", "python.exe") if os.name == "nt" else os.path.join(VENV, "bin", "python")
 MADE, READY = os.path.join(VENV, "course-made"), os.path.join(VENV, "course-ready.json")
 APT = "apt-get install -y --no-install-recommends "
-OPENGL = "libegl1 libgl1-mesa-dri libgl1"
+OPENGL = "libegl1 libgl1-mesa-dri libgl1"  # binder/apt.txt has the same
+LESSONS, TESTS = "environment.txt", "environment-test.txt"
 # Python's variables that say how it runs. The others (PYTHONPATH, PYTHONHOME ...) say which code, and are dropped.
 KEPT = "DONTWRITEBYTECODE FAULTHANDLER HASHSEED IOENCODING PYCACHEPREFIX UNBUFFERED UTF8".split()
 HELP = {"-h", "--help", "help", "--version"}
@@ -53,11 +53,11 @@ def main(arguments):
     try:
         if not arguments or arguments[0] in HELP:
             return command_line().main(arguments)
-        ready = why_not_ready() is None
-        if not ready and HELP & set(arguments):
-            return command_line().main(["--help"])
-        if not ready:
-            set_up()
+        lock = TESTS if arguments[0] == "test" else LESSONS
+        if why_not_ready(lock):
+            if HELP & set(arguments):
+                return command_line().main(["--help"])
+            set_up(lock)
         command = [PYTHON, "-P", "-m", "course_lib", *arguments]
         if os.name == "nt":  # execve does not wait there
             return subprocess.call(command, env=clean_environment())
@@ -89,58 +89,69 @@ def put(path, text):
     os.replace(path + ".part", path)
 
 
-def wanted():
+def wanted(lock):
     """What `.venv` must have been made from: the lock, the package's metadata, this folder, and its Python."""
     digest = hashlib.sha256()
-    for name in ("environment.txt", "pyproject.toml"):
+    for name in (lock, "pyproject.toml"):
         with open(os.path.join(ROOT, name), "rb") as file:
             digest.update(file.read())
-    return {"environment": digest.hexdigest(), "folder": ROOT, "python": os.path.realpath(PYTHON)}
+    return {"environment": digest.hexdigest(), "lock": lock, "folder": ROOT, "python": os.path.realpath(PYTHON)}
 
 
-def why_not_ready():
-    """None when `.venv` can be used; else (the sentence to say, whether it must be made anew)."""
+def why_not_ready(lock):
+    """None when `.venv` has what `lock` pins; else (the sentence to say, whether it must be made anew, the lock)."""
     if not os.path.lexists(VENV):
-        return "There is no .venv yet: setting it up.", True
+        return "There is no .venv yet: setting it up.", True, lock
     # A link, which shows in its real path on Windows too, may lead to somebody's files.
     if os.path.realpath(VENV) != VENV or not os.path.isdir(VENV) or (os.listdir(VENV) and not os.path.isfile(MADE)):
         raise SetupError(f"{VENV} was not made by course.py. Move it away and call course.py again.")
-    now = wanted()
     try:
         with open(READY, encoding="utf-8") as file:
             found = json.load(file)
-        changed = [name for name, value in now.items() if found.get(name) != value]
+        lock = TESTS if found.get("lock") == TESTS else lock  # what the tests need is never taken away
+        changed = [name for name, value in wanted(lock).items() if found.get(name) != value]
     except (OSError, ValueError, AttributeError):
-        return "The .venv here is half-made, because a set-up was interrupted: making it anew.", True
+        return "The .venv here is half-made, because a set-up was interrupted: making it anew.", True, lock
     if "folder" in changed or "python" in changed or not os.path.exists(PYTHON):
-        return "The .venv here was made in another folder or by another Python: making it anew.", True
-    return ("environment.txt or pyproject.toml has changed: bringing .venv up to date.", False) if changed else None
+        return "The .venv here was made in another folder or by another Python: making it anew.", True, lock
+    if "lock" in changed and "lock" in found:
+        return "The tests need more packages than the lessons: adding them, about 120 MB.", False, lock
+    return (lock + " or pyproject.toml has changed: bringing .venv up to date.", False, lock) if changed else None
 
 
-def set_up():
+def set_up(lock):
     """Make or repair `.venv`. Only one course.py does it at a time."""
     with only_one_at_a_time():
-        sentence, anew = why_not_ready() or ("", False)  # another course.py may have done it meanwhile
+        sentence, anew, lock = why_not_ready(lock) or ("", False, lock)
         if not sentence:
-            return
+            return  # another course.py has done it meanwhile
         say(sentence)
+        see_to_the_system(anew)
         if anew:
             make_venv()
-        install()
+        install(lock)
         run([PYTHON, "-P", "-m", "course_lib.commands.warm_up"])  # what fails here is told by `check`
-        see_to_opengl()
-        put(READY, json.dumps(wanted(), indent=1))
+        put(READY, json.dumps(wanted(lock), indent=1))
+
+
+def see_to_the_system(anew):
+    """Install what the system lacks, or name all of it at once, before anything is downloaded. OpenGL is optional."""
+    without_venv = anew and importlib.util.find_spec("ensurepip") is None  # Debian keeps it apart
+    missing = [f"python{sys.version_info[0]}.{sys.version_info[1]}-venv"] * without_venv
+    try:
+        if sys.platform.startswith("linux"):
+            ctypes.CDLL("libEGL.so.1"), ctypes.CDLL("libGL.so.1")
+    except OSError:
+        missing.append(OPENGL)
+    if missing and apt_install(" ".join(missing)):
+        line = f"On Debian or Ubuntu, as an administrator: {APT}{' '.join(missing)}"
+        if without_venv:
+            raise SetupError(f"this Python has no ensurepip, which makes .venv. {line}; then call course.py again.")
+        say(f"OpenGL is missing. It is optional, and `course.py check` says what is lost without it. {line}")
 
 
 def make_venv():
     """Make an empty environment. The mark that says that it is ours is never away while files are there."""
-    if importlib.util.find_spec("ensurepip") is None:  # Debian keeps it apart
-        package = f"python{sys.version_info[0]}.{sys.version_info[1]}-venv"
-        if apt_install(package):
-            raise SetupError(
-                "this Python comes without its module ensurepip, which makes .venv. On Debian or Ubuntu, as an "
-                f"administrator: {APT}{package}; then call course.py again."
-            )
     os.makedirs(VENV, exist_ok=True)
     put(MADE, "course.py made this folder, and deletes what is in it when it must be made anew.\n")
     for name in os.listdir(VENV):
@@ -152,7 +163,7 @@ def make_venv():
         raise SetupError(f"could not make .venv. Python said: {last_lines(output)}")
 
 
-def install():
+def install(lock):
     """Install the pinned packages and course_lib itself. Meanwhile the stamp is away: `.venv` is half-made."""
     say("Installing the environment into .venv, a minute or a few ...")
     if os.path.exists(READY):
@@ -160,7 +171,7 @@ def install():
     # uv is faster, but does not read pip's settings, which may say where packages come from.
     installers = [["uv", "pip", "install", "--python", PYTHON]] if shutil.which("uv") else []
     for pip in [*installers, [PYTHON, "-P", "-m", "pip", "install"]]:
-        code, output = run([*pip, "--no-deps", "-r", os.path.join(ROOT, "environment.txt")], counted=True)
+        code, output = run([*pip, "--no-deps", "-r", os.path.join(ROOT, lock)], counted=True)
         if not code:
             code, output = run([*pip, "--no-deps", "--no-build-isolation", "-e", ROOT])
             break
@@ -223,16 +234,6 @@ def locked(file):  # whether it could be locked
         return True
     except (BlockingIOError, PermissionError):
         return False
-
-
-def see_to_opengl():
-    """Install the system's OpenGL libraries where they do not load, or print the line that does. `check` draws."""
-    try:
-        if sys.platform.startswith("linux"):
-            ctypes.CDLL("libEGL.so.1"), ctypes.CDLL("libGL.so.1")
-    except OSError:
-        if apt_install(OPENGL):
-            say(f"OpenGL is missing. On Debian or Ubuntu, as an administrator: {APT}{OPENGL}")
 
 
 def apt_install(packages):

@@ -77,7 +77,7 @@ def usage() -> str:
         lines += ["", f"{group}:", *(f"  {name:<13}  {line}" for name, (_, line) in commands.items())]
     lines += ["", "Options of one command: python3 course.py COMMAND --help"]
     lines += ["Version of the course: python3 course.py --version"]
-    lines += ["The first call sets up .venv: a download of about 450 MB, 2.0 GB on disk, one or a few minutes."]
+    lines += ["The first call sets up .venv: a download of about 415 MB, 1.6 GB on disk, one or a few minutes."]
     return "\n".join(lines) + "\n"
 
 

@@ -3,6 +3,7 @@
 import ast
 import importlib.util
 import os
+import re
 import subprocess
 import sys
 import time
@@ -44,7 +45,8 @@ def copy(tmp_path):
     folder = tmp_path / "course"
     (folder / "course_lib").mkdir(parents=True)
     (folder / "course.py").write_bytes(COURSE.read_bytes())
-    (folder / "environment.txt").write_text("# nothing\n")
+    for name in ("environment.txt", "environment-test.txt"):
+        (folder / name).write_text("# nothing\n")
     (folder / "pyproject.toml").write_text(PYPROJECT)
     (folder / "backend.py").write_text(BACKEND)
     for name in ("__init__.py", "cli.py"):
@@ -106,13 +108,15 @@ def test_the_first_call_sets_up_and_the_next_ones_repair_what_has_changed(copy, 
     assert first.stdout == f"handed over ['demo', '--json'] {copy / '.venv'} {tmp_path} {kept}\n"
     assert "setting it up" in first.stderr
     assert call(copy, "x").stderr == ""
+    assert "The tests need more packages than the lessons" in call(copy, "test").stderr
+    assert call(copy, "x").stderr == call(copy, "test").stderr == "", "what the tests need stays"
 
-    (copy / "environment.txt").write_text("not-to-be-had==1\n")
+    (copy / "environment-test.txt").write_text("not-to-be-had==1\n")
     offline = call(copy, "x")
     assert offline.returncode == 1
     assert "bringing .venv up to date" in offline.stderr
     assert "Is there a network connection" in offline.stderr
-    (copy / "environment.txt").write_text("# nothing\n")
+    (copy / "environment-test.txt").write_text("# nothing\n")
     assert call(copy, "x").stderr == "", "what was installed before is still there"
 
     (copy / ".venv" / "course-ready.json").unlink()
@@ -174,12 +178,20 @@ def course(monkeypatch):
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="other systems bring OpenGL along")
 @pytest.mark.parametrize("root", [True, False])
-def test_opengl_that_is_missing_is_installed_or_its_line_is_told(course, monkeypatch, capsys, root):
+def test_what_the_system_lacks_is_installed_or_all_of_it_told_at_once(course, monkeypatch, capsys, root):
     monkeypatch.setattr(course.os, "geteuid", lambda: 0 if root else 1000)
-    course.see_to_opengl()
-    line = "apt-get install -y --no-install-recommends libegl1 libgl1-mesa-dri libgl1"
-    assert course.ran == (["apt-get update", line] if root else [])
-    assert (line in capsys.readouterr().err) == (not root)
+    opengl = " ".join((ROOT / "binder" / "apt.txt").read_text().split())
+    line = "apt-get install -y --no-install-recommends {}" + opengl
+    venv = "python{}.{}-venv ".format(*sys.version_info)
+    course.see_to_the_system(anew=False)
+    assert course.ran == (["apt-get update", line.format("")] if root else [])
+    assert (line.format("") in capsys.readouterr().err) == (not root)
+    if root:
+        course.see_to_the_system(anew=True)
+        assert course.ran[-1] == line.format(venv)
+    else:
+        with pytest.raises(course.SetupError, match=re.escape(line.format(venv))):
+            course.see_to_the_system(anew=True)
 
 
 def test_what_stopped_pip_is_told_in_a_sentence(course):

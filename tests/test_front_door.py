@@ -1,5 +1,6 @@
 """The pages beside README.md tell one version, name what there is, and ask for the same two commands."""
 
+import json
 import re
 from pathlib import Path
 
@@ -46,6 +47,16 @@ def test_links_and_commands_of_a_page_are_right(name):
         assert (ROOT / name).parent.joinpath(target).exists(), target
     calls = re.findall(r"python3 course\.py ([a-z][^`#\n]*)", text(name))
     assert [call for call in calls if find_command(call.split()) is None] == []
+
+
+def test_one_list_names_the_systems_packages_and_the_dev_container_is_the_graders():
+    grader = "course_lib/classroom/Containerfile"
+    for name in (".github/workflows/test.yml", grader):
+        assert "binder/apt.txt" in text(name), name
+        assert not set(text("binder/apt.txt").split()) & set(text(name).split()), name
+    settings = json.loads(text(".devcontainer/devcontainer.json"))
+    assert (ROOT / ".devcontainer" / settings["build"]["dockerfile"]).samefile(ROOT / grader)
+    assert settings["workspaceFolder"] == re.search(r"^WORKDIR (.*)$", text(grader), re.MULTILINE)[1]
 
 
 def test_the_workflow_calls_the_two_commands_on_three_systems_and_two_pythons():

@@ -1,4 +1,4 @@
-"""`pip install .` gives the two methods alone; environment.txt is a full lock of pyproject.toml's ranges; arrows."""
+"""`pip install .` gives the two methods alone; two files lock pyproject.toml's ranges in full; arrows."""
 
 import ast
 import importlib.metadata
@@ -14,7 +14,8 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).resolve().parents[1]
-LOCK = ROOT / "environment.txt"
+LOCK = ROOT / "environment-test.txt"
+STUDENTS = ROOT / "environment.txt"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 METHODS = ("geometry.py", "rendering", "depth_mcl", "spherical_stereo", "beyond")
 # What only the lessons, the commands or the tests have.
@@ -129,10 +130,21 @@ def test_every_range_of_pyproject_is_met_and_the_test_tools_are_there(versions):
     assert {"pytest", "pytest-xdist", "nbval", "hypothesis", "ruff"} <= set(versions)
 
 
+def test_students_install_the_same_versions_of_what_lessons_need_and_no_test_tools(versions):
+    pins = {str(requirement) for requirement in locked(STUDENTS.read_text("utf-8"))}
+    assert pins < {str(requirement) for requirement in locked(LOCK.read_text("utf-8"))}
+    names = {canonicalize_name(Requirement(pin).name) for pin in pins}
+    extras = PROJECT["optional-dependencies"]
+    ranges = [*PROJECT["dependencies"], *extras["lessons"], *extras["grading"]]
+    assert {canonicalize_name(Requirement(text).name) for text in ranges} <= names
+    tools = {canonicalize_name(Requirement(text).name) for text in extras["test"]} - {PROJECT["name"]}
+    assert names & tools == set()
+
+
 def test_the_environment_that_runs_is_the_locked_one(versions):
     if not (Path(sys.prefix) / "course-ready.json").exists():
         pytest.skip("these tests do not run in a .venv that course.py made")
-    for requirement in locked(LOCK.read_text("utf-8")):
+    for requirement in locked(LOCK.read_text("utf-8")):  # `test` has added what students do without
         if requirement.marker is None or requirement.marker.evaluate():
             name = canonicalize_name(requirement.name)
             assert importlib.metadata.version(name) == versions[name], f"{name} is another version than locked"

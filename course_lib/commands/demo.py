@@ -155,11 +155,12 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.experiments.runner import Runner
 
     experiment = importlib.import_module(f"course_lib.experiments.{name}")
-    kept = arguments.out or REPOSITORY / "results" / f"demo_{name}"
+    command = f"demo {name}" + f" frames {parameters['frames']}" * bool(parameters.get("frames"))
+    kept = arguments.out or REPOSITORY / "results" / command.replace(" ", "_")
     with temporary_folder() as temporary:
         outcome = experiment.run(Runner(kept, temporary, processes, progress_bar), **parameters)
         print(json.dumps(outcome.summary) if arguments.json else outcome.text, flush=True)
-        with run_folder(arguments.out, f"demo {name}") as out:
+        with run_folder(arguments.out, command) as out:
             written = []
             for file, (numbers, rows) in outcome.files.items():
                 write_results(out / file, numbers, rows)

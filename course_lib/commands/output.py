@@ -39,7 +39,6 @@ def print_and_write(arguments, command: str, summary: dict, text: str, write: Ca
 def write_scene(path: Path, title: str, make: Callable[[], tuple]) -> str:
     """Write the scene that `make` gives (plotter, words) as a page. Return its name, or why there is no page."""
     from course_lib.plots.scene_page import ScenePageError, write_page
-    from course_lib.rendering.renderer import OpenGLError
 
     try:
         plotter, words = make()
@@ -47,6 +46,6 @@ def write_scene(path: Path, title: str, make: Callable[[], tuple]) -> str:
             write_page(plotter, path, title, f"{title}. {words}", words)
         finally:
             plotter.close()
-    except (ScenePageError, OpenGLError, ImportError) as reason:
+    except (ScenePageError, ImportError) as reason:
         return f"no {path.name} ({reason})"
     return f"{path.name} (to be turned in a browser)"

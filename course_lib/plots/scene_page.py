@@ -23,7 +23,7 @@ from course_lib.plots.scenes import SceneError
 if TYPE_CHECKING:
     import pyvista
 
-CURE = 'pip install "pyvista[jupyter]"'
+CURE = "pip install trame-vtk"
 
 _ADDRESS = re.compile(r"""(?<=["{])[0-9A-Fa-f]{16}\b""")  # after a quote, or as instance:${...}; never a fraction
 _SCRIPT = re.compile(r'<script type="module">(.*?)</script>', re.DOTALL)
@@ -107,13 +107,15 @@ def _trame(module: str) -> ModuleType:
 def _scene_of(plotter: pyvista.Plotter) -> dict:
     """The parts of a plotter's scene and the arrays in them, as the viewer reads them."""
     serializers = _trame("modules.vtk.serializers")
-    plotter.render()
     window = plotter.render_window
-    camera = window.GetRenderers().GetFirstRenderer().GetActiveCamera()
+    renderer = window.GetRenderers().GetFirstRenderer()
+    camera = renderer.GetActiveCamera()
+    renderer.UpdateLightsGeometryToFollowCamera()  # as drawing does, which needs OpenGL
     serializers.initialize_serializers()
     context = serializers.SynchronizationContext()
     context.set_ignore_last_dependencies(True)
     scene = serializers.serialize(None, window, 1, context, 1)
+    scene["type"] = "vtkEGLRenderWindow"  # on every system
     scene["mtime"] = 1  # VTK counts the changes of all that it ever drew
     scene["extra"] = {
         "vtkRefId": serializers.reference_id(window),

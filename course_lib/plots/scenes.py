@@ -36,19 +36,27 @@ class SceneError(ValueError):
 def new_plotter(
     viewpoint: np.ndarray | None = None, focus: np.ndarray | None = None, size: tuple[int, int] = (800, 500)
 ) -> pyvista.Plotter:
-    """An empty scene: white, z up, off the screen; raises `OpenGLError` where nothing can be drawn.
+    """An empty scene: white, z up, off the screen. Without OpenGL it can become a page, and no picture (`draws`).
 
     viewpoint: from where it is seen, focus: the point in its middle, `(3,)` metres; without them the whole scene is
     seen from a corner above. size: pixels (width, height) of its picture.
     """
+    from course_lib.rendering import vtk_backend
+
     pyvista = _pyvista()
     theme = pyvista.themes.DocumentTheme()  # white, whatever the reader's own theme is
     theme.cmap, theme.show_scalar_bar = "cividis", False  # safe colours; a page cannot show the bar
     theme.lighting_params.ambient, theme.lighting_params.diffuse = 0.35, 0.65  # no wall is black, no floor white
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(size), theme=theme)
+    with vtk_backend.quiet():
+        plotter = pyvista.Plotter(off_screen=True, window_size=list(size), theme=theme)
     if viewpoint is not None:
         plotter.camera_position = [tuple(viewpoint), tuple(focus), (0.0, 0.0, 1.0)]
     return plotter
+
+
+def draws(plotter: pyvista.Plotter) -> bool:
+    """Return whether OpenGL can draw this scene. Without OpenGL, VTK makes a window in which drawing would crash."""
+    return plotter.render_window.GetClassName() != "vtkOSOpenGLRenderWindow"
 
 
 def map_mesh(scene_map: SceneMap, faces: int = MAP_FACES, below: float | None = None) -> pyvista.PolyData:
@@ -202,9 +210,7 @@ def finite(values: np.ndarray, name: str, shape: tuple[int, ...] | None = None) 
 
 def _pyvista():
     """PyVista, its windows off the screen; imported late, since it takes a second."""
-    from course_lib.rendering import vtk_backend  # first: no display is needed then
-
-    vtk_backend.off_screen_window()  # raises OpenGLError with the cure, where VTK itself would crash
+    import course_lib.rendering.vtk_backend  # noqa: F401, I001 - before pyvista: no display is needed then
     import pyvista
 
     return pyvista

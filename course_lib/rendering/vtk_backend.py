@@ -51,7 +51,8 @@ def off_screen_window() -> vtkRenderWindow:
     if _process_of_the_first_window is None:
         _process_of_the_first_window = os.getpid()
     _require_own_process(_process_of_the_first_window)
-    window = vtkRenderWindow()
+    with quiet():
+        window = vtkRenderWindow()
     if window.GetClassName() == "vtkOSOpenGLRenderWindow":
         # VTK's last resort when EGL fails; drawing with it crashes where the OSMesa library is missing.
         raise OpenGLError(f"OpenGL cannot start without a display (EGL failed). {CURE}")
@@ -59,6 +60,17 @@ def off_screen_window() -> vtkRenderWindow:
     window.SetMultiSamples(0)
     _windows.add(window)
     return window
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Silence VTK's own messages about OpenGL that cannot start. Our errors say it better."""
+    verbosity = vtkLogger.GetCurrentVerbosityCutoff()
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    try:
+        yield
+    finally:
+        vtkLogger.SetStderrVerbosity(verbosity)
 
 
 def _require_own_process(process: int) -> None:
@@ -172,9 +184,7 @@ class VtkBackend:
                 self._window.ReleaseCurrent()
 
     def _open_window(self) -> None:
-        verbosity = vtkLogger.GetCurrentVerbosityCutoff()
-        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)  # the errors here say it better
-        try:
+        with quiet():
             self._window = window = off_screen_window()
             self._points_tile = self._new_tile(_plain_actor(self._points_data))
             place_camera(self._points_tile.GetActiveCamera(), np.eye(3), np.zeros(3))
@@ -184,8 +194,6 @@ class VtkBackend:
                 raise OpenGLError(f"OpenGL gives no 24-bit depth buffer. {CURE}")
             self._points_tile.DrawOff()
             window.ReleaseCurrent()
-        finally:
-            vtkLogger.SetStderrVerbosity(verbosity)
 
     def _make_room(self, count: int) -> None:
         """Make the window and its tiles large and many enough; they only ever grow."""

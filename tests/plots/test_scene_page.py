@@ -1,6 +1,7 @@
 """The page of a scene: its words, the same bytes for the same scene, no network."""
 
 import base64
+import os
 import re
 import subprocess
 import sys
@@ -12,7 +13,6 @@ import pytest
 from course_lib.commands.output import write_scene
 from course_lib.plots import scenes
 from course_lib.plots.scene_page import ScenePageError, page_html
-from course_lib.rendering.renderer import OpenGLError
 
 WORDS = {"title": 'Axes & "more"', "alt": "The axes of a pose <seen> from above"}
 STATE = np.array([1.0, 2.0, 3.0, 0.1, 0.2, 0.3])
@@ -52,7 +52,18 @@ def test_the_same_scene_gives_the_same_bytes_also_in_another_process(page, tmp_p
     assert (tmp_path / "page").read_text() == page
 
 
-@pytest.mark.parametrize("kind", [OpenGLError, ScenePageError, ImportError])
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="other systems bring OpenGL along")
+def test_without_opengl_the_page_is_the_same_and_only_a_picture_cannot_be_drawn(page, tmp_path):
+    assert scenes.draws(scenes.new_plotter())
+    code = f"import runpy; found = runpy.run_path({__file__!r}); open('page', 'w').write(found['axes_page']())\n"
+    code += "print(found['scenes'].draws(found['scenes'].new_plotter()))"
+    hidden = os.environ | {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "DISPLAY": ""}
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=hidden, capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("False\n", "")
+    assert (tmp_path / "page").read_text() == page
+
+
+@pytest.mark.parametrize("kind", [ScenePageError, ImportError])
 def test_a_command_tells_why_it_wrote_no_page(tmp_path, kind):
     def fails():
         raise kind("nothing to draw with")

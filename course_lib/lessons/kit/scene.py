@@ -21,7 +21,7 @@ from course_lib.lessons.kit.compression import small_png
 from course_lib.lessons.kit.display import Picture
 from course_lib.paths import STORE_SCENES
 from course_lib.plots.scene_page import ScenePageError, page_html
-from course_lib.plots.scenes import SceneError
+from course_lib.plots.scenes import SceneError, draws
 
 if TYPE_CHECKING:
     import pyvista
@@ -32,6 +32,7 @@ MAX_PICTURE_BYTES = 60_000
 @dataclass(frozen=True)
 class Scene:
     """A page in a frame, and below it a folded picture of the same scene. If there is no page, only the picture.
+    Without OpenGL there is no picture.
 
     source: path of the page, relative to the notebook's folder. height: of the frame [pixels]. no_page: why there is
     no page.
@@ -45,7 +46,8 @@ class Scene:
 
     def html(self) -> str:
         if self.no_page:
-            return f"{self.picture.html()}<p>This scene cannot be turned here: {html.escape(self.no_page)}</p>"
+            picture = self.picture.html() if self.picture else ""
+            return f"{picture}<p>This scene cannot be turned here: {html.escape(self.no_page)}</p>"
         frame = (
             f'<iframe src="{self.source}" title="{html.escape(self.title)}" width="100%" height="{self.height}"'
             ' style="border: 0"></iframe>'
@@ -70,7 +72,7 @@ def show_scene(plotter: pyvista.Plotter, name: str, title: str, alt: str) -> Non
     if not re.fullmatch(r"(\d\d|[FP]\d)_[a-z0-9_]+", name):
         raise SceneError(f"a scene's name must be the lesson's number and a word, such as '01_frustum'; got {name!r}")
     try:
-        picture = Picture(small_picture(plotter), alt)
+        picture = Picture(small_picture(plotter), alt) if draws(plotter) else None
         display(Scene(_page_path(page_html(plotter, title, alt), name), title, picture=picture))
     except (ScenePageError, OSError) as reason:
         display(Scene("", title, picture=picture, no_page=str(reason)))

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from course_lib.lessons.kit.display import described
 from course_lib.lessons.kit.live_figure import LiveFigure
+from course_lib.lessons.kit.opengl import vtk
 from course_lib.lessons.kit.panel import Choice, Drawing, Panel, Slider
 from course_lib.lessons.lesson_03.scenes import buffer_step, corridor
 from course_lib.plots import figures
@@ -147,7 +148,7 @@ def camera_panel() -> Panel:
     def draw(x: float, y: float, yaw: float, near: str) -> Drawing:
         plane, heading = float(near), np.deg2rad(yaw)
         state = np.array([x, y, 1.2, 0, 0, heading])
-        image, truth = (renderer_of(plane, backend).render(state)[0] for backend in ("vtk", "ray"))
+        image, truth = (renderer_of(plane, backend).render(state)[0] for backend in (vtk(), "ray"))
         with np.errstate(invalid="ignore"):
             off_mm = np.abs(image.astype(float) - truth) * 1000
         depth.set_data(np.ma.masked_invalid(image))

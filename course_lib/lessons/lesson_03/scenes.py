@@ -5,6 +5,7 @@ import time
 import numpy as np
 
 from course_lib.lessons.kit.box_world import box_map
+from course_lib.lessons.kit.opengl import vtk
 from course_lib.lessons.kit.progress_bar import progress
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
@@ -46,7 +47,7 @@ def slanted_wall_error(near: float) -> np.ndarray:
     camera, turn = DepthCamera.sr4000(near=near), np.deg2rad(30)
     along, up, middle = np.array([np.sin(turn), np.cos(turn), 0]), np.array([0, 0, 1]), np.array([7.5, 0, 0])
     corners = np.array([middle + a * along + b * up for a, b in ((-9, -9), (9, -9), (9, 9), (-9, 9))])
-    with DepthRenderer(SceneMap(corners, np.array([[0, 1, 2], [0, 2, 3]])), camera, "vtk") as renderer:
+    with DepthRenderer(SceneMap(corners, np.array([[0, 1, 2], [0, 2, 3]])), camera, vtk()) as renderer:
         image = renderer.render(np.zeros(6))[0]
     # Plane n . p = d in the body frame (x forward, y left): with p = Z (1, -ray x, -ray y), Z = d / (n . (1, ...)).
     normal = np.cross(along, up)
@@ -55,7 +56,7 @@ def slanted_wall_error(near: float) -> np.ndarray:
 
 def seconds_per_view(scene_map: SceneMap, camera: DepthCamera, states: np.ndarray, counts: list[int]) -> np.ndarray:
     """Return seconds a view (2, counts), the best of four repeats: as tiles of one window, and one after the other."""
-    window, alone = (DepthRenderer(scene_map, camera, "vtk", exact=True) for _ in range(2))
+    window, alone = (DepthRenderer(scene_map, camera, vtk(), exact=True) for _ in range(2))
     seconds = np.zeros((4, 2, len(counts)))
     with window, alone:
         for repeat in progress(range(4), "measuring times"):

@@ -83,6 +83,11 @@ def test_where_no_page_can_be_made_or_written_the_picture_is_shown_and_the_cure(
     assert pages(tmp_path) == {}
 
 
+def test_without_opengl_the_page_is_shown_alone(shown, monkeypatch):
+    monkeypatch.setattr(scene, "draws", lambda plotter: False)
+    assert shown(store=True).endswith("</iframe>")
+
+
 def test_the_picture_shows_the_scene_and_a_restless_one_becomes_smaller():
     plotter = axes_plotter()
     picture = np.asarray(Image.open(io.BytesIO(small_picture(plotter))).convert("RGB"))
