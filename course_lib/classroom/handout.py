@@ -29,7 +29,7 @@ MADE_FOR_NBGRADER = {"source", "nbgrader_config.py", "README.md"}
 """What we put into teacher/nbgrader; whatever else lies there is the teacher's work."""
 READMES = {".": "handout.md", "teacher": "teacher.md", "teacher/nbgrader": "nbgrader.md", "student": "student.md"}
 FOR_STUDENTS = (".gitignore", "LICENSE", "README.md", "RESULTS.md", "course.py", "course_lib", "data")
-FOR_STUDENTS += ("results-in-detail", "environment-bench.txt", "environment-test.txt", "environment.txt", "pyproject.toml")
+FOR_STUDENTS += ("results-in-detail", *(f"environment{part}.txt" for part in ("", "-bench", "-test")), "pyproject.toml")
 NOT_FOR_STUDENTS = re.compile(r"course_lib/(classroom/.*|commands/(grade|handout)\.py)|.*/__pycache__/.*")
 
 
