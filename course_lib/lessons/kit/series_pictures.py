@@ -2,7 +2,8 @@
 
     python -m course_lib.lessons.kit.series_pictures
 
-writes notebooks/pictures/NN.png for every lesson, foundation and project; `tools.refresh` does it for those it ran.
+writes notebooks/pictures/NN.png (or .webp, .svg) for every lesson, foundation and project. `tools.refresh` writes those
+of the lessons that it ran.
 """
 
 import base64
@@ -11,10 +12,11 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
 from PIL import Image
 
 from course_lib.files import atomic_write
-from course_lib.lessons.kit.compression import small_png
+from course_lib.lessons.kit.compression import compress_photograph, small_png
 from course_lib.paths import REPOSITORY, numbered_paths
 
 # Lesson -> the cell whose picture we use. Of a lesson that is not listed, we use the first one made of pixels. A
@@ -27,7 +29,7 @@ CHOSEN = {
 }  # fmt: skip
 PICTURES = REPOSITORY / "notebooks" / "pictures"
 MAX_SIZE = (1000, 520)  # (width, height) in pixels; shown half as wide, so that it is sharp on fine screens
-MAX_BYTES = 50_000
+MAX_BYTES = 80_000
 
 
 def stored_picture(path: Path, cell_id: str | None) -> tuple[str, bytes]:
@@ -46,13 +48,16 @@ def stored_picture(path: Path, cell_id: str | None) -> tuple[str, bytes]:
 
 
 def write_picture(path: Path, folder: Path = PICTURES) -> Path:
-    """Write NN.png (of a drawing NN.svg) of the lesson at `path` into `folder` and return its path."""
+    """Write the picture of the lesson at `path` into `folder` as NN.png, .webp or .svg, and return its path."""
     number = path.name[:2]
     kind, data = stored_picture(path, CHOSEN.get(number))
     if kind != "svg":
-        kind, picture = "png", Image.open(io.BytesIO(data)).convert("RGB")
+        picture = Image.open(io.BytesIO(data)).convert("RGB")
         width = min(MAX_SIZE[0], MAX_SIZE[1] * picture.width // picture.height, picture.width)
-        data = small_png(picture, width, MAX_BYTES)
+        if kind == "webp":  # a photograph
+            data = compress_photograph(np.asarray(picture.resize((width, width * picture.height // picture.width))))
+        else:
+            data = small_png(picture, width, MAX_BYTES)
     atomic_write(folder / f"{number}.{kind}", data)
     return folder / f"{number}.{kind}"
 

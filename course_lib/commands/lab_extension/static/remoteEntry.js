@@ -158,6 +158,11 @@ its name, with the two functions that webpack's module federation asks for. */
     }
   }
 
+  /* In a narrow window a figure is as wide as its place: a click shows it in its own size, and another shrinks it. */
+  function enlarge(event) {
+    if (event.target.matches(".jp-OutputArea-output img")) event.target.classList.toggle("course-own-size");
+  }
+
   function activate(app) {
     const style = document.createElement("link");
     style.rel = "stylesheet";
@@ -172,6 +177,7 @@ its name, with the two functions that webpack's module federation asks for. */
     app.restored.then(makeRoom);
     window.addEventListener("resize", () => setTimeout(reachScrolled, QUIET_MS));
     document.addEventListener("load", reachScrolled, true); // of a picture
+    document.addEventListener("click", enlarge);
   }
 
   const extension = { __esModule: true, default: { id: `${NAME}:panels`, autoStart: true, activate } };
