@@ -69,7 +69,8 @@ _PAGE = """<!doctype html>
         const first = window3d?.getRenderers().find((one) => one.getActors().length);
         if (!first) return;
         clearInterval(drawn);
-        const camera = first.getActiveCamera(), view = camera.get("position", "focalPoint", "viewUp", "viewAngle");
+        const camera = first.getActiveCamera();
+        const view = structuredClone(camera.get("position", "focalPoint", "viewUp"));
         const reset = document.getElementById("reset");
         reset.hidden = false;
         reset.onclick = () => {{
