@@ -26,16 +26,17 @@ from course_lib.commands.saved_panels import drop_widgets
 from course_lib.commands.test import OFFLINE_STARTUP
 from course_lib.files import atomic_write, temporary_folder
 from course_lib.lessons.kit.exercises import Exercise, find_exercise
+from course_lib.lessons.kit.series_pictures import write_picture
 from course_lib.paths import REPOSITORY, STORE_SCENES, numbered_paths
 from tools.pace import write_minutes
 
-MAX_BYTES = 400_000
+MAX_BYTES = 700_000
 HANGS_S = 1800.0  # only what hangs takes so long
 METADATA = {
     "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
     "language_info": {"file_extension": ".py", "mimetype": "text/x-python", "name": "python"},
 }
-KEPT_CELL_METADATA = ("exercise", "tags", "jupyter", "jp-MarkdownHeadingCollapsed")
+KEPT_CELL_METADATA = ("exercise", "tags", "numbers_within", "because", "jupyter", "jp-MarkdownHeadingCollapsed")
 
 
 class RefreshError(RuntimeError):
@@ -64,6 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
             continue
         try:
             seconds, size = refresh(path, arguments.cell_timeout)
+            write_picture(path)
             print(f"{path.name}: {seconds:.1f} s, {size / 1000:.0f} kB", flush=True)
         except RefreshError as error:
             failed += 1

@@ -42,6 +42,8 @@ SETTINGS = {
         "windowingMode": "none",
         "codeCellConfig": {"lineNumbers": False, "lineWrap": True},
     },
+    "@jupyterlab/docmanager-extension:plugin": {"defaultViewers": {"markdown": "Markdown Preview"}},
+    "@jupyterlab/filebrowser-extension:browser": {"showLastModifiedColumn": False},  # its place is the names'
 }
 
 

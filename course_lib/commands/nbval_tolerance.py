@@ -1,10 +1,8 @@
 """A pytest plugin: nbval compares a cell's numbers with the tolerance that the cell declares, and all else exactly.
 
-A cell declares it in a comment at the end of a line, for people who read it:
+A cell declares it in its metadata, out of the reader's sight, as "5 %", "0.002" or "5 % or 0.002":
 
-    print(f"median error {error:.4f} m")  # numbers within 5 %
-    print(f"median error {error:.4f} m")  # numbers within 0.002
-    print(f"median error {error:.4f} m")  # numbers within 5 % or 0.002
+    "metadata": {"numbers_within": "5 % or 0.002"}
 
 It holds for every number that the cell prints or writes under a picture: the new one may differ by so many percent of
 the stored one, or by so much. The words between them stay. Loaded with `-p course_lib.commands.nbval_tolerance`.
@@ -15,7 +13,7 @@ import re
 from typing import NamedTuple
 
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
-DECLARED = re.compile(r"#\s*numbers within\s+(?:(\d+(?:\.\d+)?)\s*%)?(?:\s*or\s+)?(\d+(?:\.\d+)?)?\s*$", re.MULTILINE)
+DECLARED = re.compile(r"(?:(\d+(?:\.\d+)?) %)?(?:(?:^| or )(\d+(?:\.\d+)?))?")
 
 
 class Tolerance(NamedTuple):
@@ -25,18 +23,14 @@ class Tolerance(NamedTuple):
     absolute: float
 
 
-def declared_tolerance(source: str) -> Tolerance | None:
-    """Return what a cell's code declares, or None. Raises `ValueError` for a declaration that nobody can read."""
-    if not re.search(r"#\s*numbers within", source):
+def declared_tolerance(cell: dict) -> Tolerance | None:
+    """Return what a cell's metadata declares, or None. Raises `ValueError` for a declaration that nobody can read."""
+    if (declared := cell["metadata"].get("numbers_within")) is None:
         return None
-    found = DECLARED.findall(source)
-    if len(found) != 1 or not any(found[0]):
-        raise ValueError(
-            "a cell declares one tolerance, such as '# numbers within 5 %' or '# numbers within 5 % or 0.002'; "
-            f"got {re.findall(r'#.*numbers within.*', source)}"
-        )
-    percent, absolute = found[0]
-    return Tolerance(float(percent or 0) / 100, float(absolute or 0))
+    found = DECLARED.fullmatch(declared)
+    if not found or not any(found.groups()):
+        raise ValueError(f"numbers_within must be such as '5 %', '0.002' or '5 % or 0.002'; got {declared!r}")
+    return Tolerance(float(found[1] or 0) / 100, float(found[2] or 0))
 
 
 def within_tolerance(new: str, stored: str, tolerance: Tolerance) -> str:
@@ -76,7 +70,7 @@ def pytest_configure() -> None:
     compare = IPyNbCell.compare_outputs
 
     def compare_with_tolerance(self, test, ref, skip_compare=None):
-        tolerance = declared_tolerance(self.cell.source)
+        tolerance = declared_tolerance(self.cell)
         return compare(self, adopted(test, ref, tolerance, self.sanitize) if tolerance else test, ref, skip_compare)
 
     if compare.__name__ != compare_with_tolerance.__name__:

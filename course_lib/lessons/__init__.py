@@ -18,7 +18,8 @@ A new lesson NN needs a notebook and a folder:
   `figures.py`: functions that make a figure with `figures.new_figure` and return `described(figure, "what it shows")`,
   which the notebook hands to `show`. The alternative text is not in the cells, because it may give answers away.
   A scene starts with `plots.scenes.new_plotter`. The notebook's own cell adds the objects (`plots.scenes`,
-  `kit.scene_objects`, PyVista) and shows them with `show_scene(plotter, "NN_name", title=..., alt=...)`.
+  `kit.scene_objects`, PyVista) and shows them with `show_scene(plotter, "NN_name", title=...)`. Its
+  alternative text is `SCENE_ALT` in `figures.py`.
   There or in `panel.py`: `PANELS = {title: function that makes the panel}`. A panel's figure is a `LiveFigure`. Its
   `draw` is a plain function that takes the controls' values and returns a `Drawing`.
   `exercises.py`: `EXERCISES`, each with a solution, an input generator, and mistakes as edits of it with hints.

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 _SIGMAS = 3
 _BELOW = 1.2  # metres below the upper camera that are shown where no object was placed lower (chosen)
-_LETTERS = 0.22  # metres
+_LETTERS = 0.16  # metres
+_LETTER_WIDTH = 0.75  # of a letter's height, in the mean
 _AXES = 0.6
 
 
@@ -35,17 +36,22 @@ def location_scene(
     low, high = semantic_map.positions.min(axis=0), semantic_map.positions.max(axis=0)
     size = max(3.0, float((high - low).max()))
     focus = np.array([*(low + high) / 2, floor / 2])
-    plotter = new_plotter(focus + size * np.array([-0.45, -1.4, 1.4]), focus)
+    plotter = new_plotter(focus + size * np.array([-0.3, -1.5, 2.6]), focus)
     if semantic_map.walls is not None:
         corners = np.column_stack([semantic_map.walls, np.full(len(semantic_map.walls), floor)])
         plotter.add_mesh(path(np.vstack([corners, corners[:1]])), color="grey", line_width=2)
     labels = {label: _in_ascii(label, number) for number, label in enumerate(dict.fromkeys(semantic_map.labels), 1)}
-    for landmark in semantic_map.landmarks:
-        colour = class_style(landmark.label)[0]
+    boxes: list[np.ndarray] = []  # of the names: low and high corner
+    for landmark in sorted(semantic_map.landmarks, key=lambda one: -one.y):
+        colour, name = class_style(landmark.label)[0], labels[landmark.label]
         foot = np.array([landmark.x, landmark.y, floor])
         plotter.add_mesh(post(foot, -floor), color=colour)
-        words = text(labels[landmark.label], foot + np.array([0.08, -0.5 * _LETTERS, 0.0]), _LETTERS)
-        plotter.add_mesh(words, color=colour)
+        # A name lies on top of its post, or as far before it as keeps it clear of the others.
+        box = foot[:2] + np.array([[0.08, -0.5], [0.08 + _LETTER_WIDTH * len(name) * _LETTERS, 0.5]]) * [1, _LETTERS]
+        while any((box[0] < high).all() and (low < box[1]).all() for low, high in boxes):
+            box = box - [0.0, 0.25 * _LETTERS]
+        boxes.append(box)
+        plotter.add_mesh(text(name, np.array([*box[0], 0.02]), _LETTERS), color=BLACK)
     words = "Landmarks: posts with their class"
     if true_pose is not None:
         x, y, theta = true_pose

@@ -42,10 +42,12 @@ _PAGE = """<!doctype html>
       html, body {{ margin: 0; height: 100%; font-family: sans-serif; }}
       #help {{ position: fixed; z-index: 1; left: 0; bottom: 0; margin: 0; padding: 4px 8px; font-size: 13px;
         color: #222; background: rgba(255, 255, 255, 0.8); pointer-events: none; }}
+      #reset {{ position: fixed; z-index: 1; right: 8px; top: 8px; font-size: 13px; }}
     </style>
   </head>
   <body>
     <p id="help">{caption} Drag to turn, wheel to zoom, Shift and drag to move.</p>
+    <button id="reset" type="button" hidden>Reset view</button>
     <noscript>{alt}</noscript>
     <div class="content" role="img" aria-label="{alt}"></div>
     <script>
@@ -62,6 +64,21 @@ _PAGE = """<!doctype html>
       viewer.type = "module";
       viewer.textContent = await new Response(stream).text();
       document.head.append(viewer);
+      const drawn = setInterval(() => {{
+        const window3d = globalThis.renderWindow;
+        const first = window3d?.getRenderers().find((one) => one.getActors().length);
+        if (!first) return;
+        clearInterval(drawn);
+        const camera = first.getActiveCamera();
+        const view = structuredClone(camera.get("position", "focalPoint", "viewUp"));
+        const reset = document.getElementById("reset");
+        reset.hidden = false;
+        reset.onclick = () => {{
+          camera.set(view);
+          first.resetCameraClippingRange();
+          window3d.render();
+        }};
+      }}, 100);
     </script>
   </body>
 </html>

@@ -24,6 +24,7 @@ WORST_FRAMES = 3
 _POINTS_A_FRAME = 3000  # that are drawn (chosen: enough to see a wall beside the map's)
 _HEADROOM = 0.4  # metres above the highest camera at which the map is cut: below most ceilings (chosen)
 _AROUND = 8.0  # metres of the map that are shown around the path (chosen: a page is small)
+_ROOM = 5.0  # metres of the map that the first view shows at least, to the left and right of the path (chosen)
 _FRUSTUM = 0.6  # metres
 _FAR_FROM_ZERO = 1000.0  # metres from which on single precision would show
 
@@ -43,7 +44,7 @@ def track_scene(
     around = _around(scene_map, paths, up, to_scene)
     camera, worst = sequence.camera(near, far), worst_frames(result, sequence)
     measured = [_measured(sequence.depth(index), camera, estimated[index]) for index in worst]
-    plotter = new_plotter(*_view(np.concatenate([paths, *measured])))
+    plotter = new_plotter(*_view(paths))
     if up is None:
         plotter.add_mesh(map_mesh(around), color="lightgrey", opacity=0.3)
     else:
@@ -101,11 +102,10 @@ def _around(scene_map: SceneMap, paths: np.ndarray, up: str | None, to_scene: np
 
 
 def _view(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """From where points `(N, 3)` are seen, and their middle; a few stray ones are left out of account."""
-    low, high = np.percentile(points, (2, 98), axis=0)
+    """From where a path `(N, 3)` and the room around it are seen, so steeply that no wall hides it, and its middle."""
+    low, high = points.min(axis=0), points.max(axis=0)
     focus = (low + high) / 2
-    size = max(4.0, float((high - low).max()))
-    return focus + size * np.array([-0.6, -1.1, 1.1]), focus
+    return focus + max(_ROOM, float((high - low).max())) * np.array([-0.6, -1.1, 2.2]), focus
 
 
 def _measured(depth: np.ndarray, camera: DepthCamera, camera_to_world: np.ndarray) -> np.ndarray:

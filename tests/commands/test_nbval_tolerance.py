@@ -8,19 +8,14 @@ TEN_PERCENT = Tolerance(0.1, 0.0)
 
 
 @pytest.mark.parametrize(
-    ("source", "tolerance"),
-    [
-        ("print(1)", None),
-        ("print(x)  # numbers within 5 %", (0.05, 0.0)),
-        ("print(x)  # numbers within 0.002", (0.0, 0.002)),
-        ("x = 1\nprint(x)  # numbers within 5 % or 0.002\nx", (0.05, 0.002)),
-    ],
+    ("declared", "tolerance"), [("5 %", (0.05, 0.0)), ("0.002", (0.0, 0.002)), ("5 % or 0.002", (0.05, 0.002))]
 )
-def test_what_a_cell_declares(source, tolerance):
-    assert declared_tolerance(source) == tolerance
-    for wrong in ("x  # numbers within", "x  # numbers within 5 %\ny  # numbers within 3 %"):
-        with pytest.raises(ValueError, match="declares one tolerance"):
-            declared_tolerance(wrong)
+def test_what_a_cell_declares(declared, tolerance):
+    assert declared_tolerance({"metadata": {"numbers_within": declared}}) == tolerance
+    assert declared_tolerance({"metadata": {}}) is None
+    for wrong in ("", "5 % or", "five", "0.1 %%"):
+        with pytest.raises(ValueError, match="numbers_within must be such as"):
+            declared_tolerance({"metadata": {"numbers_within": wrong}})
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,16 @@
 """A lesson by keyboard alone and by ear: names, values with units, what is said after a change; and axe-core."""
 
+import base64
+import io
 import re
 from pathlib import Path
 
 import nbformat
+import numpy as np
 import pytest
+from PIL import Image
 
+from course_lib.lessons.kit.compression import compress
 from course_lib.paths import notebook_paths, numbered_paths
 from tests.notebooks.driven_lab import SESSION_IS_IDLE, open_lesson, serious_findings
 
@@ -21,6 +26,13 @@ SAID = "text => document.querySelector('#course-says').textContent.includes(text
 DESCRIBED = "text => document.querySelector('.course-panel img').alt.includes(text)"
 SLIDER, BOX, LIST = ".noUi-handle", ".course-panel input[type=number]", ".course-panel select"
 DARK = "() => window.jupyterapp.commands.execute('apputils:change-theme', {theme: 'JupyterLab Dark'}).then(() => true)"
+
+SQUARES = np.array([[[255, 255, 255], [0, 0, 0], [0, 114, 178], [213, 94, 0]]], np.uint8)  # white, black, two colours
+SHOW_FIRST = """url => {
+    const image = Object.assign(new Image(), {id: 'squares', alt: 'Four squares in a row', src: url});
+    document.querySelector('.jp-OutputArea-output').prepend(image);
+    return image.decode();
+}"""
 
 
 def tab_to(page, selector: str) -> None:
@@ -89,13 +101,16 @@ def test_every_control_has_a_name_and_its_values_are_read_with_their_units(page)
     assert panel.locator('[title="null"]').count() == 0
 
 
-def test_nothing_serious_is_found_in_a_lesson_that_was_run_nor_in_the_dark_theme_which_dims_figures(page):
+def test_nothing_serious_is_found_in_a_lesson_that_was_run_nor_in_the_dark_theme_which_keeps_colours(page):
     assert serious_findings(page) == []
     page.evaluate(DARK)
     page.wait_for_function("() => document.body.dataset.jpThemeLight === 'false'")
-    dimmed = page.locator(".course-panel img").first.evaluate("image => getComputedStyle(image).filter")
-    assert dimmed.startswith("brightness(0.")
-    assert "invert" not in dimmed
+    url = "data:image/png;base64," + base64.b64encode(compress(SQUARES.repeat(20, 0).repeat(20, 1))).decode()
+    page.evaluate(SHOW_FIRST, url)
+    screenshot = Image.open(io.BytesIO(page.locator("#squares").screenshot())).convert("RGB")
+    shown = np.asarray(screenshot)[10, 10::20].astype(int)
+    assert np.abs(shown[:2] - [[18] * 3, [237] * 3]).max() <= 5, "white paper is dark, black ink is light"
+    assert np.abs(shown[2:] - SQUARES[0, 2:]).max() <= 5
     assert serious_findings(page) == []
 
 

@@ -78,7 +78,11 @@ def test_a_page_opens_offline_draws_and_can_be_turned(browser, path):
     assert page.title()
     if path.stem not in MADE_BY_HAND:
         assert page.title() in page.locator("#help").inner_text()
-        assert share_changed_by_a_turn(page) > 0.02
+        first = settled_picture(page)
+        assert (turned := share_changed_by_a_turn(page)) > 0.02
+        page.get_by_role("button", name="Reset view").click()
+        page.mouse.move(0, SIZE["height"] - 1)  # off the button, which is drawn otherwise below a mouse
+        assert (np.abs(settled_picture(page) - first).max(axis=2) > 30).mean() < turned / 4
     assert errors == []
     assert [url for url in requests if not url.startswith(("data:", "blob:"))] == [path.as_uri()]
     page.close()

@@ -2,11 +2,13 @@
 
 import re
 
+import numpy as np
 import pytest
 from PIL import Image
 
-from course_lib.lessons.kit.series_pictures import CHOSEN, MAX_BYTES, MAX_SIZE, write_pictures
+from course_lib.lessons.kit.series_pictures import MAX_BYTES, MAX_SIZE, write_picture
 from course_lib.paths import REPOSITORY, foundation_paths, notebook_paths, numbered_paths
+from tests.notebooks.conftest import read
 
 FOLDER = REPOSITORY / "notebooks"
 README, GLOSSARY = ((FOLDER / name).read_text(encoding="utf-8") for name in ("README.md", "GLOSSARY.md"))
@@ -32,10 +34,21 @@ def test_every_lesson_has_a_row_with_its_time_and_its_picture(path):
     number, row = path.name[:2], row_of(path)
     assert row.startswith(f"| [{number} · ")
     assert f"({minutes_of(number)} min)" in row
-    alt, source = re.search(r"!\[([^\]]+)\]\(([^)]+)\)", row).groups()
+    source, alt = re.search(r'<img src="([^"]+)" width="250" alt="([^"]+)">', row).groups()
     assert len(alt.split()) >= 4
-    assert source == f"pictures/{number}.png"
-    assert (FOLDER / source).stat().st_size <= MAX_BYTES
+    assert re.fullmatch(rf"pictures/{number}\.(png|webp|svg)", source)
+
+
+@pytest.mark.parametrize("path", numbered_paths().values(), ids=lambda path: path.name[:2])
+def test_a_lesson_begins_with_its_picture_which_is_of_its_stored_outputs(path, tmp_path):
+    title = read(path).cells[0].source
+    [source] = re.findall(r'<img src="([^"]+)" width="500" alt="[^"]+">\n\n\*\*', title)
+    stored, made = path.parent / source, write_picture(path, tmp_path)
+    assert stored.resolve() == FOLDER / "pictures" / made.name, "before the time that the lesson takes"
+    assert stored.read_bytes() == made.read_bytes(), "run tools.refresh"
+    assert made.stat().st_size <= MAX_BYTES
+    if made.suffix != ".svg":
+        assert np.less_equal(Image.open(made).size, MAX_SIZE).all()
 
 
 def test_every_link_leads_somewhere_and_the_times_of_the_paths_add_up():
@@ -46,17 +59,6 @@ def test_every_link_leads_somewhere_and_the_times_of_the_paths_add_up():
     for _, lessons, hours, minutes in rows:
         assert sum(minutes_of(number) for number in lessons.split(", ")) == 60 * int(hours) + int(minutes)
     assert set(rows[0][1].split(", ") + rows[1][1].split(", ")) < set(rows[2][1].split(", "))
-
-
-@pytest.mark.release
-def test_the_command_makes_the_pictures(tmp_path):
-    written = write_pictures(tmp_path / "pictures")
-    assert {path.stem for path in written} >= set(CHOSEN)
-    for path in written:
-        assert path.stat().st_size <= MAX_BYTES
-        with Image.open(path) as picture:
-            assert picture.width <= MAX_SIZE[0]
-            assert picture.height <= MAX_SIZE[1]
 
 
 @pytest.mark.parametrize("term", ENTRIES)

@@ -8,6 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from PIL import Image
 
+PIXEL_RATIO = 2  # pixels of a stored figure for each pixel of its size on the page: sharp on fine screens
+
 
 def png_bytes(figure: Figure) -> bytes:
     """Return the figure as PNG with a palette of 128 colours: a third of the bytes of full colour."""
@@ -52,8 +54,12 @@ def compress_photograph(rgb: np.ndarray) -> bytes:
 
 
 def _pixels(figure: Figure) -> np.ndarray:
+    dpi = figure.get_dpi()
+    figure.set_dpi(PIXEL_RATIO * dpi)
     figure.canvas.draw()
-    return np.asarray(figure.canvas.buffer_rgba())[..., :3]
+    pixels = np.asarray(figure.canvas.buffer_rgba())[..., :3]
+    figure.set_dpi(dpi)
+    return pixels
 
 
 def _encoded(picture: Image.Image, kind: str, **options) -> bytes:

@@ -14,12 +14,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedFormatter, FuncFormatter
 from PIL import Image
 
-from course_lib.lessons.kit.compression import png_bytes, svg_bytes, webp_bytes
+from course_lib.lessons.kit.compression import PIXEL_RATIO, png_bytes, svg_bytes, webp_bytes
 
 PictureKind = Literal["png", "webp", "svg+xml"]
 
-# Pixels. In a narrower window the reader scrolls the figure, because in a smaller picture the labels are unreadable.
-MIN_WIDTH = 640
 MAX_SVG_BYTES = 40_000  # a drawing of more points takes less as pixels
 
 
@@ -46,7 +44,8 @@ def show(figure: Figure, caption: str = "", alt: str = "", photograph: bool = Fa
     else:
         svg = b"" if has_images(figure) else svg_bytes(figure)
         data, kind = (svg, "svg+xml") if 0 < len(svg) <= MAX_SVG_BYTES else (png_bytes(figure), "png")
-    display(Picture(data, alt or str(figure.get_label()), kind, caption))
+    ratio = 1 if kind == "svg+xml" else PIXEL_RATIO
+    display(Picture(data, alt or str(figure.get_label()), kind, caption, ratio))
 
 
 def has_images(figure: Figure) -> bool:
@@ -82,20 +81,22 @@ class Picture:
     """A PNG, WebP or SVG with alternative text and, below it, its caption.
 
     It is shown as the HTML `<img alt=...>`, because JupyterLab drops the alternative text of an `image/png` output.
+    ratio: how many of its pixels, side by side, stand for one pixel on the page.
     """
 
-    def __init__(self, data: bytes, alt: str, kind: PictureKind = "png", caption: str = "") -> None:
+    def __init__(self, data: bytes, alt: str, kind: PictureKind = "png", caption: str = "", ratio: int = 1) -> None:
         if len(alt.split()) < 4:
             raise FigureError(f"the alternative text must say what the picture shows, in a sentence; got {alt!r}")
         self.data, self.alt, self.kind, self.caption = data, " ".join(alt.split()), kind, " ".join(caption.split())
+        self.ratio = ratio
 
     def html(self) -> str:
         """Return the `<img>` element. It contains the picture's bytes."""
         data = base64.b64encode(self.data).decode("ascii")
-        wide = MIN_WIDTH if self.kind == "svg+xml" else min(MIN_WIDTH, Image.open(io.BytesIO(self.data)).width)
+        size = f' width="{round(Image.open(io.BytesIO(self.data)).width / self.ratio)}"' if self.ratio > 1 else ""
         image = (
-            f'<img alt="{html.escape(self.alt)}" src="data:image/{self.kind};base64,{data}"'
-            f' style="max-width: 100%; min-width: {wide}px">'
+            f'<img alt="{html.escape(self.alt)}" src="data:image/{self.kind};base64,{data}"{size}'
+            ' style="max-width: 100%; height: auto">'
         )
         return f"{image}<p><em>{html.escape(self.caption)}</em></p>" if self.caption else image
 

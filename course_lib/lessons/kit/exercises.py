@@ -10,6 +10,7 @@ import copy
 import dis
 import functools
 import importlib
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -74,6 +75,8 @@ class Verdict(NamedTuple):
     printed: str = ""
 
 
+SIGNS = {"right": ("\u2713", 32), "wrong": ("\u2717", 31)}  # and their colours, by number (ANSI)
+
 NOT_ATTEMPTED = Verdict("not attempted", "not attempted yet. Replace the `...` above, then run both cells.")
 
 
@@ -91,10 +94,19 @@ def check(number: str, function: Callable) -> None:
         except OSError as error:
             said = f"not kept: {error}"
     show_printed(verdict.printed)
-    print(f"{number}: {verdict.message}" + (f" (try {tries})" if tries else ""))
+    print(f"{number}: {signed(verdict)}" + (f" (try {tries})" if tries else ""))
     if said:
         print(f"({said})")
     update_page()
+
+
+def signed(verdict: Verdict) -> str:
+    """Return a verdict's message. In a notebook, an answer has its sign, in a colour of JupyterLab's theme."""
+    if verdict.status not in SIGNS or not type(sys.stdout).__module__.startswith("ipykernel"):
+        return verdict.message
+    sign, colour = SIGNS[verdict.status]
+    first, stop, rest = verdict.message.partition(".")
+    return f"\x1b[1;{colour}m{sign} {first}\x1b[0m{stop}{rest}"
 
 
 def show_printed(text: str) -> None:

@@ -7,6 +7,7 @@ or whose processor rounds otherwise, gets another page, `scenes/yours/NAME.html`
 from __future__ import annotations
 
 import html
+import importlib
 import os
 import re
 from dataclasses import dataclass
@@ -19,6 +20,7 @@ from PIL import Image
 from course_lib.files import atomic_write
 from course_lib.lessons.kit.compression import small_png
 from course_lib.lessons.kit.display import Picture
+from course_lib.lessons.kit.exercises import package_name
 from course_lib.paths import STORE_SCENES
 from course_lib.plots.scene_page import ScenePageError, page_html
 from course_lib.plots.scenes import SceneError, draws
@@ -62,15 +64,16 @@ class Scene:
         return f"Scene: {self.title}"
 
 
-def show_scene(plotter: pyvista.Plotter, name: str, title: str, alt: str) -> None:
+def show_scene(plotter: pyvista.Plotter, name: str, title: str, alt: str = "") -> None:
     """Display a scene as a page that the reader can turn, with a picture of it. Closes the plotter.
 
     name: of the page; it starts with the lesson's number ("01_frustum"). title: of the frame and the page. alt: a
-    sentence that says what the scene shows. Raises `SceneError` for an invalid name or an empty scene, and
-    `FigureError` for an `alt` that is too short.
+    sentence that says what the scene shows; by default `SCENE_ALT` of the lesson's figures.py. Raises `SceneError` for
+    an invalid name or an empty scene, and `FigureError` for an `alt` that is too short.
     """
     if not re.fullmatch(r"(\d\d|[FP]\d)_[a-z0-9_]+", name):
         raise SceneError(f"a scene's name must be the lesson's number and a word, such as '01_frustum'; got {name!r}")
+    alt = alt or importlib.import_module(f"course_lib.lessons.{package_name(name[:2])}.figures").SCENE_ALT
     try:
         picture = Picture(small_picture(plotter), alt) if draws(plotter) else None
         display(Scene(_page_path(page_html(plotter, title, alt), name), title, picture=picture))

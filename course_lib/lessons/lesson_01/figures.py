@@ -14,6 +14,8 @@ from course_lib.plots.scenes import frustum
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 
+SCENE_ALT = "Three cameras in the corridor, each with its frustum and its axes, each turned by one angle."
+
 AXES = ("forward", "left", "up")  # of the body, in the order of a pose matrix's columns
 # How every figure of this lesson draws these axes, with the marker at the tip.
 COLOURS = (figures.VERMILION, figures.GREEN, figures.BLUE)

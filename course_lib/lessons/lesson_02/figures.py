@@ -15,6 +15,8 @@ from course_lib.plots.corridor_figures import plane_cut
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.sensors.laser_survey import Scan
 
+SCENE_ALT = "A room without ceiling, dark where the map is right; behind the pillar a bright strip stands in the air."
+
 ROOM_FROM_ABOVE = {"xlabel": "x [m]", "ylabel": "y [m]", "xlim": (-0.3, 5.3), "ylim": (-0.3, 4.3), "aspect": "equal"}
 
 

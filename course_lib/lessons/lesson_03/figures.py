@@ -15,6 +15,8 @@ from course_lib.plots import figures
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 
+SCENE_ALT = "A corridor of boxes, the camera's frustum in it, and its depth image as a torn surface."
+
 SURFACES = (((3.0, -0.75), (3.4, 0.35)), ((5.2, -1.5), (5.2, 1.6)))  # both ends as depth, height [m]
 SLOPES = np.linspace(-0.24, 0.24, 7)  # of the rays of seven pixels, from the side
 

@@ -12,7 +12,7 @@ from course_lib.plots.corridor_figures import figure_5, floor_plan
 from course_lib.plots.figures import BLACK, BLUE, GREEN, ORANGE, line_style, new_figure
 from course_lib.rendering.scene_map import SceneMap
 
-SCENE = "A black path along the corridor, blue arrows on it, and flat ellipsoids, longer along the corridor."
+SCENE_ALT = "A black path along the corridor, blue arrows on it, and flat ellipsoids, longer along the corridor."
 
 
 def experiment(scene_map: SceneMap, sequence: DepthSequence) -> Figure:

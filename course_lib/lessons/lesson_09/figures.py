@@ -7,8 +7,8 @@ from course_lib.lessons.kit.display import described
 from course_lib.lessons.lesson_09.runs import Track
 from course_lib.plots.figures import BLACK, BLUE, SKY_BLUE, VERMILION, depth_images, line_style, new_figure
 
-SCENE = """A corridor cut open; along it small blue ellipsoids on a dashed line, first upright, then wide, then small;
-    an orange line that wanders to and fro at the start and stays behind."""
+SCENE_ALT = """A corridor cut open; along it small blue ellipsoids on a dashed line, first upright, then wide, then
+    small; an orange line that wanders to and fro at the start and stays behind."""
 DASHED = {"color": BLACK, "linewidth": 0.9, "linestyle": (0, (6, 3))}
 SMALL = {"markersize": 4}
 COMPONENTS = ("place: x", "place: y", "place: z", "turn about forward", "turn about left", "turn about up")

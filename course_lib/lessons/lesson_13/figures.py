@@ -19,7 +19,7 @@ from course_lib.plots.scenes import polydata
 from course_lib.spherical_stereo.matching.epipolar import EPIPOLAR_TOLERANCE
 
 TOP, BOTTOM = 260, 600  # rows [pixels]: where the furniture is on a panorama 640 high, and a number above it
-SPHERES = (
+SCENE_ALT = (
     "Two grey spheres, one above the other, and a black point beside them. A yellow upright plane through all three "
     "cuts each sphere in a circle: bold on the point's side, dashed behind; a ray leads to the point."
 )

@@ -6,5 +6,5 @@ from course_lib.lessons.kit.room_photographs import pair_of, room_map, room_reco
 from course_lib.lessons.lesson_14.figures import PANELS, PIXEL, directions_to, noisy_directions, sampled_places
 from course_lib.lessons.lesson_14.figures import ellipse_figure, errors_figure, growth_figure, places_figure
 from course_lib.lessons.lesson_14.figures import triangle_figure, triangulation_panel
-from course_lib.lessons.lesson_14.ranges import PLACES, SPACE, azimuth_gaps, both_ranges, cuboid_range, error_texts
+from course_lib.lessons.lesson_14.ranges import PLACES, azimuth_gaps, both_ranges, cuboid_range, error_texts
 from course_lib.lessons.lesson_14.ranges import exact_box_ranges, places_in_space, ranges_of_one_object

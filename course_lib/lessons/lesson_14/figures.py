@@ -15,6 +15,11 @@ from course_lib.spherical_stereo.panorama import direction_from_angles
 from course_lib.spherical_stereo.ranging import triangulation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
+SCENE_ALT = (
+    "Two cameras on one axis, rays to twelve objects, thin green ellipsoids that point at the rig, and black balls at "
+    "the true places: near ones beside small ellipsoids, far ones inside long ones."
+)
+
 PIXEL = 2 * np.pi / 1280  # radians of one pixel of the room's panoramas, in azimuth and in elevation alike
 # Standard normal draws for azimuth, upper and lower elevation, the same for every setting, so that nothing flickers.
 SAMPLES = np.random.default_rng(14).standard_normal((400, 3))

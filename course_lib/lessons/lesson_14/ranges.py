@@ -19,10 +19,6 @@ from course_lib.spherical_stereo.ranging.object_positions import disparity_dista
 from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, TrueObject
 
 PLACES = ("02_a", "06_b", "08_a", "09_a")  # of experiment_2, where features are matched: all over the room
-SPACE = (
-    "Two cameras on one axis, rays to twelve objects, thin green ellipsoids that point at the rig, and black balls at "
-    "the true places: near ones beside small ellipsoids, far ones inside long ones."
-)
 # In the room, z up, the floor at 0, metres: `(n, 3)`, `(n, 3, 3)`, the map's x and y with the measured z, `(2, 3)`.
 PlacesInSpace = namedtuple("PlacesInSpace", "labels places covariances true cameras")
 # Horizontal ranges [m] of objects: from the map, from the centres of two boxes and from features (NaN: none).

@@ -16,7 +16,7 @@ from course_lib.plots.panorama_drawing import class_style, draw_box, panorama
 from course_lib.plots.room_figures import draw_pose
 
 VIEW = np.deg2rad(21.8)  # half of the angle that the depth camera sees
-SCENE = (
+SCENE_ALT = (
     "A furnished room cut open, its landmarks as posts with names; on the far wall a blue patch with the potted plant, "
     "on the same wall a tilted purple patch beside the refrigerator, and an orange one below the ceiling."
 )

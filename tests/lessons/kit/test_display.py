@@ -66,11 +66,13 @@ def test_alternative_text_must_say_something(alt):
         Picture(b"", alt)
 
 
-@pytest.mark.parametrize(("inches", "least"), [(3, 300), (10, 640)])
-def test_a_picture_carries_its_words_and_is_scrolled_rather_than_shrunk_until_nobody_reads_it(inches, least):
-    bundle = Picture(png_bytes(figures.new_figure(size=(inches, 1))[0]), 'A "wall" <a>\n&')._repr_mimebundle_()
+@pytest.mark.parametrize("inches", [3, 10])
+def test_a_picture_carries_its_words_is_sharp_on_fine_screens_and_is_never_wider_than_its_place(inches):
+    png = png_bytes(figures.new_figure(size=(inches, 1))[0])
+    bundle = Picture(png, 'A "wall" <a>\n&', ratio=2)._repr_mimebundle_()
+    assert Image.open(io.BytesIO(png)).width == 200 * inches
     assert 'alt="A &quot;wall&quot; &lt;a&gt; &amp;" src="data:image/png;base64,' in bundle["text/html"]
-    assert f"min-width: {least}px" in bundle["text/html"]
+    assert f'" width="{100 * inches}" style="max-width: 100%; height: auto">' in bundle["text/html"]
     assert bundle["text/plain"] == 'Picture: A "wall" <a> &'
 
 

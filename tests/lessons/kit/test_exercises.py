@@ -6,13 +6,16 @@ import numpy as np
 import pytest
 
 from course_lib.lessons.kit.exercises import (
+    NOT_ATTEMPTED,
     Exercise,
     UnknownExerciseError,
+    Verdict,
     check,
     find_exercise,
     is_stub,
     judge,
     right_on,
+    signed,
 )
 
 
@@ -170,3 +173,16 @@ def test_right_inputs_of_an_exercise_with_many_right_answers_are_those_that_it_a
     answers = [exercise.solution(*given) for given in arguments]
     assert right_on(exercise, arguments, answers) == [True] * len(arguments)
     assert right_on(exercise, arguments, [None, -1.0, *answers[2:]])[:3] == [False, False, True]
+
+
+def test_in_a_notebook_an_answer_has_a_sign_and_a_colour_and_elsewhere_plain_words(monkeypatch):
+    right, wrong = Verdict("right", "right."), Verdict("wrong", "not yet. Look again.")
+    assert (signed(right), signed(wrong)) == ("right.", "not yet. Look again.")
+    monkeypatch.setattr("sys.stdout", type("OutStream", (), {"__module__": "ipykernel.iostream"})())
+    said = (signed(right), signed(wrong), signed(NOT_ATTEMPTED))
+    monkeypatch.undo()
+    assert said == (
+        "\x1b[1;32m\u2713 right\x1b[0m.",
+        "\x1b[1;31m\u2717 not yet\x1b[0m. Look again.",
+        NOT_ATTEMPTED.message,
+    )

@@ -87,6 +87,23 @@ its name, with the two functions that webpack's module federation asks for. */
     if (verdict && output.matches(".jp-OutputArea-child, .jp-OutputArea-output")) region.textContent = verdict[0];
   }
 
+  /* The filter of the dark theme: the more colour a pixel has (its greatest channel less its least), the less of it is
+  inverted. */
+  const DARK = `<svg width="0" height="0" style="position: absolute" aria-hidden="true">
+    <filter id="course-dark" x="0" y="0" width="100%" height="100%" color-interpolation-filters="sRGB">
+      <feColorMatrix in="SourceGraphic" result="r" values="1 0 0 0 0  1 0 0 0 0  1 0 0 0 0  0 0 0 0 1" />
+      <feColorMatrix in="SourceGraphic" result="g" values="0 1 0 0 0  0 1 0 0 0  0 1 0 0 0  0 0 0 0 1" />
+      <feColorMatrix in="SourceGraphic" result="b" values="0 0 1 0 0  0 0 1 0 0  0 0 1 0 0  0 0 0 0 1" />
+      <feBlend in="r" in2="g" mode="lighten" /><feBlend in2="b" mode="lighten" result="greatest" />
+      <feBlend in="r" in2="g" mode="darken" /><feBlend in2="b" mode="darken" result="least" />
+      <feBlend in="greatest" in2="least" mode="difference" />
+      <feColorMatrix result="colour" values="0 0 0 0 0  0 0 0 0 0  0 0 0 0 0  6 0 0 0 -0.4" />
+      <feComposite in="SourceGraphic" in2="colour" operator="in" result="coloured" />
+      <feColorMatrix in="SourceGraphic" result="turned"
+        values="-0.86 0 0 0 0.93  0 -0.86 0 0 0.93  0 0 -0.86 0 0.93  0 0 0 1 0" />
+      <feComposite in="coloured" in2="turned" operator="over" />
+    </filter></svg>`;
+
   function liveRegion() {
     const region = document.createElement("div");
     region.id = "course-says";
@@ -141,11 +158,17 @@ its name, with the two functions that webpack's module federation asks for. */
     }
   }
 
+  /* In a narrow window a figure is as wide as its place: a click shows it in its own size, and another shrinks it. */
+  function enlarge(event) {
+    if (event.target.matches(".jp-OutputArea-output img")) event.target.classList.toggle("course-own-size");
+  }
+
   function activate(app) {
     const style = document.createElement("link");
     style.rel = "stylesheet";
     style.href = STYLE;
     document.head.append(style);
+    document.body.insertAdjacentHTML("beforeend", DARK);
     watch(liveRegion());
     keepKeys();
     const narrow = window.matchMedia(`(max-width: ${NARROW_PX}px)`);
@@ -154,6 +177,7 @@ its name, with the two functions that webpack's module federation asks for. */
     app.restored.then(makeRoom);
     window.addEventListener("resize", () => setTimeout(reachScrolled, QUIET_MS));
     document.addEventListener("load", reachScrolled, true); // of a picture
+    document.addEventListener("click", enlarge);
   }
 
   const extension = { __esModule: true, default: { id: `${NAME}:panels`, autoStart: true, activate } };
