@@ -1,4 +1,4 @@
-"""README.md and RESULTS.md quote what the commands print: tables, numbers over seeds; the README's code runs."""
+"""README.md and the pages of results quote what the commands print: tables, numbers; the README's code runs."""
 
 import importlib
 import json
@@ -21,7 +21,9 @@ from tools import sweep
 from tools.bench_tables import bench_table
 
 ROOT = Path(__file__).parents[1]
-README, RESULTS = ((ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "RESULTS.md"))
+README, FRONT = ((ROOT / name).read_text(encoding="utf-8") for name in ("README.md", "RESULTS.md"))
+DETAILS = {page.stem: page.read_text(encoding="utf-8") for page in sorted((ROOT / "results-in-detail").glob("*.md"))}
+RESULTS = "\n".join(DETAILS.values())
 SNIPPETS = re.findall(r"```python\n(.*?)```", README, re.S)
 
 
@@ -32,7 +34,7 @@ def stored(path):
 
 
 def row(name):
-    """Cells of the row of RESULTS.md that begins so, without the first one."""
+    """Cells of the row of the results that begins so, without the first one."""
     line = next(line for line in RESULTS.splitlines() if line.startswith(f"| {name}"))
     return [cell.strip() for cell in line.split("|")[2:-1]]
 
@@ -115,7 +117,7 @@ def test_the_finale_is_what_the_command_prints_of_its_stored_numbers():
 
 @pytest.mark.parametrize("name", ["corridor/trouble_wagon", "corridor/trouble_hand", "room/trouble"])
 def test_sensor_trouble_is_what_the_command_prints_of_its_stored_numbers(name):
-    section = RESULTS.partition("### 4.1 Sensor trouble")[2].partition("\n### ")[0].partition("\n## ")[0]
+    section = DETAILS["sensor_trouble"]
     found = stored(f"{name}.json")
     assert is_quoted(trouble_table(found), section)
     wrong = sum(one["confident_wrong"] for one in [found["undisturbed"], *found["rows"]])
@@ -138,8 +140,16 @@ def test_the_readme_is_a_front_page_whose_numbers_links_and_commands_are_right()
     calls = re.findall(r"python3 course\.py ([a-z][^`#\n]*)", README + RESULTS)
     assert len(calls) >= 10
     assert [call for call in calls if find_command(call.split()) is None] == []
-    for target in re.findall(r"\]\(([^)#]+)\)", README + RESULTS):
-        assert target.startswith("http") or (ROOT / target).exists(), target
+    for folder, text in ((ROOT, README), (ROOT, FRONT), (ROOT / "results-in-detail", RESULTS)):
+        for target in re.findall(r"\]\(([^)#]+)\)", text):
+            assert target.startswith("http") or (folder / target).exists(), target
+
+
+def test_the_page_of_main_tables_links_every_section_and_quotes_its_rows():
+    assert set(re.findall(r"\(results-in-detail/(\w+)\.md\)", FRONT)) == set(DETAILS)
+    quoted = [line for line in FRONT.splitlines() if re.match(r"    \S|      \S|\| [^\[].*\d", line)]
+    assert len(quoted) > 20
+    assert [line for line in quoted if line not in RESULTS.splitlines()] == []
 
 
 def test_the_examples_of_the_readme_fit_their_commands_and_read_shipped_files():

@@ -90,7 +90,7 @@ def _walk(parser: argparse.ArgumentParser) -> None:
     options.add_number(parser, "--seed", "seed of room and walk (default: 1)", 1)
     _seeds(parser, "several rooms instead, told together")
     options.add_text(parser, "--every", "NUMBERS", "thin the recordings: 1,2,4 runs each (default: 1,2,4)", "1,2,4")
-    told = "with commas: annealed, paper, floor, or the annealed filter with one idea switched off, as in compare"
+    told = "with commas: annealed, recovering (it searches when lost), paper, floor, others as in compare"
     options.add_text(parser, "--methods", "NAMES", f"{told} (default: annealed,floor)", "annealed,floor")
 
 
@@ -98,6 +98,7 @@ def _lost(parser: argparse.ArgumentParser) -> None:
     _seeds(parser, "a trial each: recording, kidnapping, start", "1-3")
     told = "instead of the corridor, a recording of this folder with its truth and, in map.ply, its map"
     options.add_folder(parser, "--recording", told)
+    options.add_flag(parser, "--rooms", "instead of the corridor, a generated room for each seed")
     options.add_folder(parser, "--data", "corridor data (default: data/corridor)")
 
 

@@ -22,6 +22,7 @@ from course_lib.paths import data_path
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.simulation.corridor.seeded_recording import building_of_data, record_seed
+from course_lib.simulation.room.depth_world import record_walk
 
 GRAVITY_SIGMA = np.deg2rad(1.0)
 RIGHT = 0.20, 20.0  # metres, degrees: within both, a place is the right one
@@ -30,9 +31,13 @@ MIN_JUMP = 1.0, 40.0  # metres, degrees: a kidnapping moves the camera by one of
 START_FRAMES = 20
 
 
-def run(runner: Runner, *, seeds: list[int], recording: Path | None, data: Path | None) -> Outcome:
+def run(runner: Runner, *, seeds: list[int], recording: Path | None, data: Path | None, rooms: bool) -> Outcome:
     """Run `demo lost`: the trials that are missing, then all of them together."""
-    if recording:
+    if recording and rooms:
+        raise ValueError("--recording and --rooms name different recordings; give one of them")
+    if rooms:
+        function, common = room_trial, {}
+    elif recording:
         read_sequence(recording).require_poses()  # told now, not after the first run
         folder = recording.absolute()
         function, common = trial, {"map_file": str(folder / "map.ply"), "sequence": str(folder)}
@@ -56,6 +61,13 @@ def corridor_trial(data: str, seed: int) -> dict[str, dict]:
     with temporary_folder() as temporary:
         record_seed(temporary / "hand", building_of_data(data), seed, carried="hand")
         return trial(str(Path(data) / "map.ply"), str(temporary / "hand"), seed)
+
+
+def room_trial(seed: int) -> dict[str, dict]:
+    """One trial on a recording of the seed's own, carried by hand through a generated room (that of `demo walk`)."""
+    with temporary_folder() as temporary:
+        record_walk(temporary / "walk", seed)
+        return trial(str(temporary / "walk" / "map.ply"), str(temporary / "walk"), seed)
 
 
 def summarize(trials: Sequence[dict[str, dict]]) -> dict[str, float | None]:

@@ -21,7 +21,7 @@ def disparity_figure(upper_image: np.ndarray, features) -> Figure:
     good, disparity = features.epipolar, np.degrees(features.vertical_disparity)
     low, high = np.percentile(disparity[good], _COLOUR_PERCENTILES) if good.any() else (0.0, 1.0)
     points = axes.scatter(
-        *features.keypoints_upper[good].T, c=disparity[good], s=9, cmap="cividis", vmin=low, vmax=high, linewidths=0
+        *features.keypoints_upper[good].T, c=disparity[good], s=9, cmap="plasma", vmin=low, vmax=high, linewidths=0
     )
     axes.scatter(*features.keypoints_upper[~good].T, marker="x", s=22, color=VERMILION, linewidths=1)
     figure.colorbar(points, ax=axes, label="vertical disparity [degrees]", shrink=0.7, extend="both")

@@ -88,7 +88,7 @@ def test_a_seeds_recording_by_hand_and_the_one_with_calibration_errors(tmp_path,
     assert len(rows) == 6
     assert all(row["frames"] == 3 for row in rows.values())
     assert max(row["median_position_m"] for name, row in rows.items() if not name.startswith("the paper's")) < 0.05
-    less, kind = (rows[f"annealed and refined{part}"]["median_rotation_deg"] for part in (", less kind", ""))
+    less, kind = (rows[f"annealed and refined{part}"]["median_rotation_deg"] for part in (", with errors", ""))
     assert less > kind, "a mount that is off by 0.3 degrees an axis"
     assert (tmp_path / "covariance.png").exists()
 

@@ -86,6 +86,7 @@ CLEAR = 0.05  # share of pixels measured behind the map up to which a pose that 
 SEEN = 0.06  # of raw score: what moving a pose along directions that the image does not show may cost
 RIVAL_WITHIN = 0.06  # of raw score: a pose that fits less is no rival of the best
 RIVAL_APART = np.array([0.15, np.deg2rad(10.0)])  # metres, radians
+IMAGE_FIRST = 4  # times the image's information moves the pose: motions' errors add up, the map's errors do not
 CHECKED = 3  # of so many tracked frames one tells about the intrinsics, to save time
 
 
@@ -253,7 +254,8 @@ class AnnealedLocalizer:
         before, predicted = prediction.origin(found.pose, spread, measured)
         covariance = self._predicted_covariance(local(before, predicted), spread, measured)
         information = pose_information(middle.measured, middle.draw(found.pose[None])[0], middle.renderer.camera)
-        narrowed, gain = self.fuse(covariance, information)
+        narrowed, _ = self.fuse(covariance, information)
+        _, gain = self.fuse(covariance, IMAGE_FIRST * information)
         fits = judge_refined(found.agreement) == "tracked"
         apart = local(predicted, found.pose)
         if image_says == "tracked" or self._confirmed(found, spread, measured):

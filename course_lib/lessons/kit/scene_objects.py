@@ -19,7 +19,7 @@ def arrows(states: np.ndarray, length: float = 0.3, weights: np.ndarray | None =
     """Return particles as flat arrowheads that point along x, each with a fin on top, so that roll and pitch show too.
 
     states: `(N, 6)` [m, rad], the position at the arrow's middle. length: [m]. weights: `(N,)`, they become the point
-    data "weight" (with `add_mesh(..., cmap="cividis")` the colour).
+    data "weight" (with `add_mesh(..., cmap="plasma")` the colour).
     """
     states = np.atleast_2d(as_states(states))
     # Tip, the two ends of the tail, the notch between them, the top of the fin.

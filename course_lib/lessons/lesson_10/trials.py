@@ -125,5 +125,5 @@ def stored_table(place: str) -> str:
         lines.append(f"{name:26} {found[key]:3} of {n}  (95 % interval {low:.0f} to {high:.0f} %)")
     low, high = wilson_percent(false, frames)
     lines.append(f"{'false alarms in peace':26} {false:3} of {frames} frames  ({low:.2f} to {high:.2f} %)")
-    start = f"to start: {found['frames_to_start']:.0f} frames, {found['particles_to_start']:.0f} particles"
-    return "\n".join([*lines, f"{'median':26} {found['frames_to_recover']:.0f} frames to recover; {start}"])
+    start = f"to start {found['frames_to_start']:.0f}, with {found['particles_to_start']:.0f} particles"
+    return "\n".join([*lines, f"{'frames, median':26} to recover {found['frames_to_recover']:.0f}, {start}"])

@@ -54,7 +54,7 @@ def counts_figure(counts: np.ndarray, upper_names: Sequence[str], lower_names: S
     figure, axes = new_figure(size=(7.6, 4.8))
     classes = [np.array([name.partition(" at ")[0] for name in names]) for names in (upper_names, lower_names)]
     compared, roots = np.equal.outer(*classes), np.sqrt(counts)
-    axes.imshow(np.ma.masked_array(roots, ~compared), cmap="cividis", aspect="auto")
+    axes.imshow(np.ma.masked_array(roots, ~compared), cmap="plasma", aspect="auto")
     axes.grid(False)
     for i, j in np.argwhere(compared):
         colour = "white" if roots[i, j] < 0.6 * roots.max() else "black"

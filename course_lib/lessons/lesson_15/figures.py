@@ -46,9 +46,9 @@ def terms_figure(scene: MatchingScene, terms: dict[str, np.ndarray]) -> Figure:
     shows = [scene.true_landmarks[i] for i in order]
     for k, (a, (title, table)) in enumerate(zip(axes.flat, terms.items(), strict=True)):
         shown = np.ma.masked_greater(table[order], 10)  # unlike classes, which would fill the table with one colour
-        image = a.imshow(shown, cmap="cividis", vmin=0, vmax=1, interpolation="nearest", aspect="auto")
+        image = a.imshow(shown, cmap="plasma", vmin=0, vmax=1, interpolation="nearest", aspect="auto")
         a.patch.set(facecolor="white", edgecolor="0.7", hatch="////", linewidth=0)
-        a.plot(shows, np.arange(len(table)), ".", color=figures.VERMILION, markersize=5)
+        a.plot(shows, np.arange(len(table)), "o", color="white", markersize=4, mec="black", mew=0.6)
         a.grid(False)
         below, left, names = k >= 2, k % 2 == 0, short_names()
         a.set_xticks(range(len(names)), names if below else [""] * len(names), rotation=90, fontsize=9)

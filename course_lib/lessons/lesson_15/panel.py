@@ -36,7 +36,7 @@ def weights_panel() -> Panel:
     figure, (heat, plan, rounds) = figures.new_figure(1, 3, size=(11.0, 4.3))
     heat.get_gridspec().set_width_ratios([1.25, 1.15, 0.8])
     scale = PowerNorm(0.5, 0.0, MAX_PENALTY)
-    image = heat.imshow(np.zeros((n, n)), cmap="cividis", norm=scale, interpolation="nearest", aspect="auto")
+    image = heat.imshow(np.zeros((n, n)), cmap="plasma", norm=scale, interpolation="nearest", aspect="auto")
     heat.patch.set(facecolor="white", edgecolor="0.7", hatch="////", linewidth=0)
     heat.grid(False)
     heat.set_xticks(range(n), names, rotation=90, fontsize=7)

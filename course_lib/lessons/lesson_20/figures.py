@@ -86,7 +86,7 @@ def disparity_picture(pair: PanoramaPair, features: FeatureMatches) -> Figure:
     good = features.epipolar
     rows = features.vertical_disparity[good] * pair.size[1] / np.pi
     low, high = np.percentile(rows, (2, 98)) if good.any() else (0.0, 1.0)
-    points = axes.scatter(*features.keypoints_upper[good].T, c=rows, s=6, cmap="cividis", vmin=low, vmax=high)
+    points = axes.scatter(*features.keypoints_upper[good].T, c=rows, s=6, cmap="plasma", vmin=low, vmax=high)
     axes.set_ylim(0.85 * pair.size[1], 0.2 * pair.size[1])  # neither tripod nor ceiling
     figure.colorbar(points, ax=axes, label="vertical disparity [pixels]", shrink=0.8)
     alt = "The upper panorama with boxes around its objects and features coloured by their vertical disparity."

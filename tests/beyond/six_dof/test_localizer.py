@@ -159,7 +159,7 @@ def test_before_a_bare_wall_it_soon_says_that_it_does_not_know_where(rng):
     assert (sigma[:, 0] < 0.02).all()
     assert (np.diff(sigma[:, 1]) > 0).all()
     tracked = np.array([e.status == "tracked" for e in estimates])
-    assert (off(estimates, still)[tracked, 0] < 0.2).all()
+    assert (off(estimates, still)[tracked, 0] < 0.1).all()
     assert {e.status for e in estimates[-4:]} == {"lost"}
 
 
