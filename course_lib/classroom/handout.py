@@ -28,17 +28,8 @@ MADE_BY = "course.py handout"
 MADE_FOR_NBGRADER = {"source", "nbgrader_config.py", "README.md"}
 """What we put into teacher/nbgrader; whatever else lies there is the teacher's work."""
 READMES = {".": "handout.md", "teacher": "teacher.md", "teacher/nbgrader": "nbgrader.md", "student": "student.md"}
-FOR_STUDENTS = (
-    ".gitignore",
-    "LICENSE",
-    "README.md",
-    "RESULTS.md",
-    "results-in-detail",
-    "course.py",
-    "course_lib",
-    "data",
-)
-FOR_STUDENTS += ("environment-bench.txt", "environment-test.txt", "environment.txt", "pyproject.toml")
+FOR_STUDENTS = (".gitignore", "LICENSE", "README.md", "RESULTS.md", "course.py", "course_lib", "data", "pyproject.toml")
+FOR_STUDENTS += ("environment-bench.txt", "environment-test.txt", "environment.txt", "results-in-detail")
 NOT_FOR_STUDENTS = re.compile(r"course_lib/(classroom/.*|commands/(grade|handout)\.py)|.*/__pycache__/.*")
 
 
