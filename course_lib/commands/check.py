@@ -1,7 +1,6 @@
 """Look at the environment: one line a dependency, OpenGL, and a rendered depth image compared with its closed form.
 
-Every line reads OK, or FAIL with the cure, or LACK for OpenGL, which is optional. Imports and drivers can crash, so
-they run in a process of their own.
+Every line reads OK, or FAIL (LACK for OpenGL) with the cure. Imports and drivers can crash, so they run apart.
 """
 
 import argparse
@@ -20,10 +19,7 @@ from packaging.utils import canonicalize_name
 
 DISTRIBUTION = "course-lib"
 EXTRAS = ("", "lessons")  # what a student needs
-MAKE_ANEW = (
-    "delete the folder .venv and run: python3 course.py check (if it stays, mend what the message names, such as a "
-    "library of the system, or send this line to whoever gave you the course)"
-)
+MAKE_ANEW = "delete the folder .venv and run: python3 course.py check. If it stays, ask whoever gave you the course"
 INSTALL_OPENGL = (
     "as root: apt-get install -y --no-install-recommends libegl1 libgl1-mesa-dri libgl1. Without it both methods and "
     "the lessons run, but 3D scenes have no picture, and lesson 19, demo rooms, trouble and finale stop"
@@ -52,8 +48,8 @@ class Finding(NamedTuple):
     optional: bool = False
 
     def __str__(self) -> str:
-        word = "LACK" if self.optional else "FAIL"
-        return f"OK    {self.text}" if self.ok else f"{word}  {self.text}. Cure: {self.cure}"
+        word = "LACK, which is optional:" if self.optional else "FAIL "
+        return f"OK    {self.text}" if self.ok else f"{word} {self.text}. Cure: {self.cure}"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -64,10 +60,9 @@ def run(arguments: argparse.Namespace) -> int:
     right = []
     for finding in chain(check_packages(), check_depth_images(), check_machine()):
         print(finding, flush=True)
-        right.append(finding.ok or (None if finding.optional else False))
+        right += [finding.ok] if finding.ok or not finding.optional else []
     failed = right.count(False)
-    fine = "Nothing FAILED, and what you LACK is optional." if None in right else f"All {len(right)} OK."
-    print(f"\n{failed} of {len(right)} FAILED." if failed else f"\n{fine}", flush=True)
+    print(f"\n{failed} of {len(right)} FAILED." if failed else f"\nAll {len(right)} OK.", flush=True)
     return 1 if failed else 0
 
 

@@ -45,8 +45,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    if "--mutations" in arguments.passed_on:
-        raise ValueError("test --mutations is a tool now: .venv/bin/python -m tools.mutants --help")
     started = time.monotonic()
     with temporary_folder() as home:
         words = pytest_arguments(arguments, cpu_count())
