@@ -1,0 +1,95 @@
+"""Sphinx's settings of the course's site. tools/site_pages.py writes the pages beside this file."""
+
+import json
+import re
+import shutil
+from importlib.util import find_spec
+from pathlib import Path
+
+HERE = Path(__file__).parent
+WRITTEN = json.loads((HERE / "equations.json").read_text(encoding="utf-8"))
+
+project = html_title = "Indoor localization by doing it"
+author = copyright = ""
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax", "sphinx_codeautolink"]
+root_doc = "index"
+exclude_patterns = [".doctrees", "extra"]
+
+nb_execution_mode = "off"
+myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 4
+myst_dmath_double_inline = True
+suppress_warnings = ["mystnb.unknown_mime_type"]
+
+autodoc_typehints = "signature"
+autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True
+napoleon_google_docstring = False
+python_use_unqualified_type_names = True
+nitpick_ignore_regex = [(r"py:.*", r".*")]  # types of other libraries, whose pages no link may need
+
+html_theme = "sphinx_book_theme"
+html_theme_options = {
+    "use_download_button": False,
+    "use_fullscreen_button": False,
+    "show_toc_level": 2,
+    "show_navbar_depth": 1,
+    "pygments_light_style": "a11y-high-contrast-light",
+    "pygments_dark_style": "a11y-high-contrast-dark",
+}
+if WRITTEN["repository"]:
+    html_theme_options |= {"repository_url": WRITTEN["repository"], "use_repository_button": True}
+html_static_path = ["_static"]
+html_css_files = ["course.css"]
+html_js_files = ["course.js"]
+html_favicon = "_static/favicon.svg"
+html_extra_path = ["extra"]
+html_copy_source = False
+html_show_copyright = html_show_sphinx = False
+
+mathjax_path = "mathjax/tex-chtml.js"
+mathjax3_config = {"options": {"enableMenu": False}}
+for part in ("tex-chtml.js", "output/chtml/fonts/woff-v2"):
+    package = Path(find_spec("sphinx-mathjax-offline").origin).parent / "static" / "mathjax" / part
+    copied = HERE / "_static" / "mathjax" / part
+    copied.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copytree(package, copied, dirs_exist_ok=True) if package.is_dir() else shutil.copyfile(package, copied)
+
+
+codeautolink_concat_default = True
+
+
+def as_rst(app, what, name, thing, options, lines):
+    """Write a compact docstring as reStructuredText: indented equations, names in backticks, what it cites as links."""
+    written, literal, in_sections = [], False, False
+    for line in lines:
+        in_sections = in_sections or re.fullmatch(r"-{3,}", line) is not None
+        indented = line.startswith("    ") and not in_sections
+        if indented and not literal:
+            written += ["", "::", ""]
+        elif literal and not indented and line.strip():
+            written.append("")
+        literal = indented or (literal and not line.strip())
+        written.append(line if literal else safe(line))
+    lines[:] = written
+
+
+def safe(line):
+    """Return a line in which stars, bars and final underscores are themselves."""
+    parts = re.split(r"(``.*?``|`[^`]*`)", line)
+    for index, part in enumerate(parts):
+        parts[index] = f"``{part.strip('`')}``" if index % 2 else re.sub(r"[*|]|(?<=\w)_(?!\w)", r"\\\g<0>", part)
+    line = "".join(parts)
+    cited = re.search(r"Source:\s+paper (\d),\s+eqs?\.?\s", line)
+    if not cited:
+        return line
+
+    def link(match):
+        page, part = WRITTEN["equations"].get(f"{cited[1]}.{match[1]}", ("", ""))
+        return f"`({match[1]}) <../{page}#{part}>`__" if page else match[0]
+
+    return line[: cited.end()] + re.sub(r"\((\d+)\)", link, line[cited.end() :])
+
+
+def setup(app):
+    app.connect("autodoc-process-docstring", as_rst, priority=100)  # before napoleon reads the sections
