@@ -4,21 +4,17 @@ The pages hold no solution and no last hint. They load nothing from another serv
 program: it makes the course's `.venv` if it is missing, and goes on there.
 """
 
-import sys
-from pathlib import Path
-
-ROOT = Path(__file__).resolve().parents[1]
-
-if __name__ == "__main__" and not __package__:  # started as a file, so tools/ would stand before Python's own modules
-    sys.path[0] = str(ROOT)
-
 import argparse
+import html
 import os
 import re
 import subprocess
+import sys
 import time
-from html.parser import HTMLParser
+from pathlib import Path
 from urllib.parse import unquote, urljoin
+
+ROOT = Path(__file__).resolve().parents[1]
 
 LOCK = ROOT / "environment-site.txt"
 PACKAGES = ROOT / ".site"
@@ -62,51 +58,38 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def build(source: Path, pages: Path) -> None:
-    """Let Sphinx make HTML in the folder `pages`. Every warning is an error. Raises `RuntimeError` with what it said."""
+    """Let Sphinx make HTML in the folder `pages`. Raises `RuntimeError` with what it said for every warning."""
     command = [sys.executable, "-P", "-m", "sphinx", "-b", "html", "-q", "-n", "-W", "--keep-going", "-j", "auto"]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), str(PACKAGES)]), "PYTHONWARNINGS": "ignore"}
     with_trees = [*command, "-d", str(source / ".doctrees"), str(source), str(pages)]
     done = subprocess.run(with_trees, env=environment, capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(f"Sphinx ended with code {done.returncode}:\n{done.stderr[-6000:]}")
+    for template in pages.glob("_static/*macros.html"):  # the theme's own, not a page
+        template.unlink()
     (pages / ".nojekyll").touch()  # else GitHub's pages would leave out folders such as _static
-
-
-class Addresses(HTMLParser):
-    """The names of a page's parts, and the addresses that it links to or loads."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.names, self.targets = {""}, []
-        self.feed(text)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        given = dict(attrs)
-        self.names |= {given.get("id"), given.get("name")}
-        kept = (given.get("href"), given.get("src"))
-        self.targets += [target for target in kept if target and not target.startswith(("data:", "mailto:"))]
 
 
 def check_links(pages: Path) -> tuple[int, list[str]]:
     """Return the number of links within a site, and each one that leads to no file or to no part of its page."""
-    read = {path.relative_to(pages).as_posix(): path for path in pages.rglob("*.html")}
-    found = {name: Addresses(path.read_text(encoding="utf-8")) for name, path in read.items()}
-    files = {path.relative_to(pages).as_posix() for path in pages.rglob("*") if path.is_file()}
+    texts = {path.relative_to(pages).as_posix(): path.read_text("utf-8") for path in sorted(pages.rglob("*.html"))}
+    texts = {page: re.sub(r"(?s)<script.*?</script>", "", text) for page, text in texts.items()}
+    parts = {page: {"", *re.findall(r'\s(?:id|name)="([^"]+)"', text)} for page, text in texts.items()}
     links, broken = 0, []
-    for page, addresses in found.items():
-        for target in addresses.targets:
-            place, _, part = urljoin(f"http://site/{page}", target).partition("#")
-            if not place.startswith("http://site/"):  # another server's
+    for page, text in texts.items():
+        for target in re.findall(r'\s(?:href|src)="([^"]+)"', text):
+            file, _, part = unquote(urljoin(f"http://site/{page}", html.unescape(target))).partition("#")
+            if not file.startswith("http://site/"):  # another server's, or a picture in the page
                 continue
-            links += 1
-            file = unquote(place.removeprefix("http://site/").partition("?")[0])
-            if file not in files or (file in found and unquote(part) not in found[file].names):
+            links, file = links + 1, file.removeprefix("http://site/").partition("?")[0]
+            if not (pages / file).is_file() or part not in parts.get(file, {part}):
                 broken.append(f"{page} -> {target}")
     return links, broken
 
 
 def start() -> int:
     """Hand over to the environment's Python, which is made first if this is the system's Python."""
+    sys.path[0] = str(ROOT)  # instead of tools/
     import course
 
     python = sys.executable

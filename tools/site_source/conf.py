@@ -6,23 +6,25 @@ import shutil
 from importlib.util import find_spec
 from pathlib import Path
 
+from docutils.nodes import Text
+
 HERE = Path(__file__).parent
-WRITTEN = json.loads((HERE / "equations.json").read_text(encoding="utf-8"))
+SITE = json.loads((HERE / "site.json").read_text(encoding="utf-8"))
 
 project = html_title = "Indoor localization by doing it"
 author = copyright = ""
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax", "sphinx_codeautolink"]
 root_doc = "index"
-exclude_patterns = [".doctrees", "extra"]
+exclude_patterns = [".doctrees", "extra", "contents.txt"]
 
+highlight_language = "none"
 nb_execution_mode = "off"
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
 myst_dmath_double_inline = True
-suppress_warnings = ["mystnb.unknown_mime_type"]
 
 autodoc_typehints = "signature"
-autodoc_member_order = "bysource"
+autodoc_member_order = "groupwise"
 autodoc_preserve_defaults = True
 napoleon_google_docstring = False
 python_use_unqualified_type_names = True
@@ -34,22 +36,25 @@ html_theme_options = {
     "use_fullscreen_button": False,
     "show_toc_level": 2,
     "show_navbar_depth": 1,
+    "navbar_persistent": [],  # the sidebar has the search
     "pygments_light_style": "a11y-high-contrast-light",
     "pygments_dark_style": "a11y-high-contrast-dark",
 }
-if WRITTEN["repository"]:
-    html_theme_options |= {"repository_url": WRITTEN["repository"], "use_repository_button": True}
+if SITE["repository"]:
+    html_theme_options |= {"repository_url": SITE["repository"], "use_repository_button": True}
 html_static_path = ["_static"]
 html_css_files = ["course.css"]
 html_js_files = ["course.js"]
 html_favicon = "_static/favicon.svg"
 html_extra_path = ["extra"]
+html_context = {"default_mode": "auto"}
+html_use_index = html_domain_indices = False
 html_copy_source = False
 html_show_copyright = html_show_sphinx = False
 
-mathjax_path = "mathjax/tex-chtml.js"
-mathjax3_config = {"options": {"enableMenu": False}}
-for part in ("tex-chtml.js", "output/chtml/fonts/woff-v2"):
+mathjax_path = "mathjax/tex-chtml-full.js"
+mathjax3_config = {"chtml": {"scale": 0.95}, "options": {"enableMenu": False}}
+for part in ("tex-chtml-full.js", "output/chtml/fonts/woff-v2"):
     package = Path(find_spec("sphinx-mathjax-offline").origin).parent / "static" / "mathjax" / part
     copied = HERE / "_static" / "mathjax" / part
     copied.parent.mkdir(parents=True, exist_ok=True)
@@ -66,30 +71,43 @@ def as_rst(app, what, name, thing, options, lines):
         in_sections = in_sections or re.fullmatch(r"-{3,}", line) is not None
         indented = line.startswith("    ") and not in_sections
         if indented and not literal:
-            written += ["", "::", ""]
+            written += ["", ".. code-block:: none", ""]
         elif literal and not indented and line.strip():
             written.append("")
         literal = indented or (literal and not line.strip())
+        if re.match(r"(Source|Raises|Warns)\b", line) and not in_sections:
+            written.append("")  # a paragraph of its own
         written.append(line if literal else safe(line))
     lines[:] = written
 
 
 def safe(line):
-    """Return a line in which stars, bars and final underscores are themselves."""
+    """Return a line in which stars, bars and final underscores are themselves, with links to the equations it cites."""
     parts = re.split(r"(``.*?``|`[^`]*`)", line)
-    for index, part in enumerate(parts):
-        parts[index] = f"``{part.strip('`')}``" if index % 2 else re.sub(r"[*|]|(?<=\w)_(?!\w)", r"\\\g<0>", part)
+    parts[::2] = [re.sub(r"\*(?![a-z ]+\*)(?<![a-z]\*)|\||(?<=\w)_(?!\w)", r"\\\g<0>", part) for part in parts[::2]]
+    parts[1::2] = [f"``{part.strip('`')}``" for part in parts[1::2]]
     line = "".join(parts)
     cited = re.search(r"Source:\s+paper (\d),\s+eqs?\.?\s", line)
-    if not cited:
-        return line
 
-    def link(match):
-        page, part = WRITTEN["equations"].get(f"{cited[1]}.{match[1]}", ("", ""))
-        return f"`({match[1]}) <../{page}#{part}>`__" if page else match[0]
+    def link(found):
+        page, part = SITE["equations"][f"{cited[1]}.{found[1]}"]
+        return f"`({found[1]}) <../{page}#{part}>`__"
 
-    return line[: cited.end()] + re.sub(r"\((\d+)\)", link, line[cited.end() :])
+    return line[: cited.end()] + re.sub(r"\((\d+)\)", link, line[cited.end() :]) if cited else line
+
+
+def only_ours(app, what, name, thing, skip, options):
+    """Leave out what a module imports from other libraries."""
+    return skip or (what == "module" and not getattr(thing, "__module__", "course_lib").startswith("course_lib"))
+
+
+def shorten_titles(app, env):
+    """In the sidebar, a title ends at its colon."""
+    for title in env.titles.values():
+        title.children = [Text(title.astext().split(":")[0])]
 
 
 def setup(app):
     app.connect("autodoc-process-docstring", as_rst, priority=100)  # before napoleon reads the sections
+    app.connect("autodoc-skip-member", only_ours)
+    app.connect("env-updated", shorten_titles)
