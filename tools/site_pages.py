@@ -31,7 +31,9 @@ PROTECTED = re.compile(
     r"(```.*?```|`[^`\n]+`|\$\$.*?\$\$|\$[^$\n]+\$|!?\[(?:[^\[\]]|\[[^\]]*\])*\]\([^)]*\)|<[^>\n]+>|^(?:#+| {4}) .*?$)",
     re.S | re.M,
 )
-NAMES_FIGURES = re.compile(r"\b[Ff]igures? F?\d+\.\d+(?:(?:, | and | to )F?\d+\.\d+)*")
+# "Figures 6.1 and 6.2", "lessons 03 and 04".
+NUMBER = r"(?:F?\d+\.\d+|\d\d|F\d)\b"
+NAMES = re.compile(rf"\b(?:[Ff]igure|[Ll]esson)s? {NUMBER}(?:(?:, (?=F?\d+\.)|,? and | to ){NUMBER})*")
 # "Eqs (9) and (10)" names equations. In the lesson that shows them, "by (9)" does, too.
 NAMED = re.compile(r"([Ee]quations?|[Ee]qs?\.?)(?: \([\dF.]+\),?| to| and| or)* $")
 NAMED_AT_HOME = re.compile(r"(?:\b(?:by|in|of|to|with|from|like|and|or|than|through|into|for)|^) $", re.M)
@@ -60,6 +62,7 @@ class Site:
         self.repository = repository
         self.lessons = {path_of(one.path): one for one in read_assignments()}
         self.markdown = sorted({path_of(path) for glob in PAGES.split() for path in REPOSITORY.glob(glob)} - LEFT_OUT)
+        self.numbers = {lesson.name: page for page, lesson in self.lessons.items()}
         self.figures: dict[str, str] = {}
         self.shown: dict[str, dict[str, str]] = {page: {} for page in self.markdown}  # page -> number -> key
         self.homes: dict[str, str] = {}
@@ -80,7 +83,7 @@ class Site:
         parts = PROTECTED.split(student_text(source, lambda target: self.target(target, page)))
         for index in range(0, len(parts), 2):
             text = self.with_equations(parts[index], page, "".join(parts[max(0, index - 2) : index])[-80:])
-            parts[index] = NAMES_FIGURES.sub(lambda found: self.figures_in(found[0], page), text)
+            parts[index] = NAMES.sub(lambda found: self.named(found[0], page), text)
         return EQUATION.sub(lambda found: self.anchored(found, page), "".join(parts))
 
     def target(self, target: str, page: str) -> str | None:
@@ -93,12 +96,15 @@ class Site:
             return f"{self.repository}/{'tree' if (REPOSITORY / meant).is_dir() else 'blob'}/HEAD/{meant}"
         return None
 
-    def figures_in(self, words: str, page: str) -> str:
-        def link(found: re.Match) -> str:
-            home = self.figures.get(found[1])
-            return self.link(found[0], home, f"figure-{found[1]}", page) if home else found[0]
+    def named(self, words: str, page: str) -> str:
+        """Return "Figures 6.1 and 6.2" or "lessons 03 and 04" with links."""
 
-        return re.sub(r"(?:[Ff]igures? )?(F?\d+\.\d+)", link, words)
+        def link(found: re.Match) -> str:
+            home = self.figures.get(found[1]) or self.numbers.get(found[1])
+            part = f"#figure-{found[1]}" if found[1] in self.figures else ""
+            return self.link(found[0], home, part, page) if home and home + part != page else found[0]
+
+        return re.sub(rf"(?:\b[FfLl]\w+ )?({NUMBER})", link, words)
 
     def with_equations(self, text: str, page: str, before: str) -> str:
         """Return text with a link for each "(8)" that is an equation. before: what stands in front of the text."""
@@ -112,13 +118,13 @@ class Site:
             if one == "1.1" and not paper and page in self.markdown:  # both papers have an eq. (1)
                 return found[0]
             home = page if shown else self.homes.get(one)
-            return self.link(found[0], home, f"eq-{one}", page) if home else found[0]
+            return self.link(found[0], home, f"#eq-{one}", page) if home else found[0]
 
         return re.sub(r"\((F?\d+(?:\.\d+)?)\)", link, text)
 
     def link(self, words: str, home: str, part: str, page: str) -> str:
         address = "" if home == page else relative(as_html(home), page)
-        return f'<a class="to-number" href="{address}#{part}">{words}</a>'
+        return f'<a class="to-number" href="{address}{part}">{words}</a>'
 
     def anchored(self, found: re.Match, page: str) -> str:
         """Return an equation with its anchor, and at its home with the functions that compute it."""

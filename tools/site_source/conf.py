@@ -6,7 +6,7 @@ import shutil
 from importlib.util import find_spec
 from pathlib import Path
 
-from docutils.nodes import Text
+from docutils.nodes import Text, reference
 
 HERE = Path(__file__).parent
 SITE = json.loads((HERE / "site.json").read_text(encoding="utf-8"))
@@ -19,12 +19,14 @@ exclude_patterns = [".doctrees", "extra", "contents.txt"]
 
 highlight_language = "none"
 nb_execution_mode = "off"
+nb_code_prompt_show, nb_code_prompt_hide = "Show the code", "Hide the code"
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
 myst_dmath_double_inline = True
 
 autodoc_typehints = "signature"
-autodoc_member_order = "groupwise"
+autodoc_member_order = "bysource"
+add_module_names = False
 autodoc_preserve_defaults = True
 napoleon_google_docstring = False
 python_use_unqualified_type_names = True
@@ -69,7 +71,8 @@ def as_rst(app, what, name, thing, options, lines):
     written, literal, in_sections = [], False, False
     for line in lines:
         in_sections = in_sections or re.fullmatch(r"-{3,}", line) is not None
-        indented = line.startswith("    ") and not in_sections
+        in_table = re.match(r"[\w/*]+ {2,}\S", line) is not None
+        indented = (line.startswith("    ") or in_table) and not in_sections
         if indented and not literal:
             written += ["", ".. code-block:: none", ""]
         elif literal and not indented and line.strip():
@@ -77,7 +80,7 @@ def as_rst(app, what, name, thing, options, lines):
         literal = indented or (literal and not line.strip())
         if re.match(r"(Source|Raises|Warns)\b", line) and not in_sections:
             written.append("")  # a paragraph of its own
-        written.append(line if literal else safe(line))
+        written.append("    " * in_table + line if literal else safe(line))
     lines[:] = written
 
 
@@ -97,13 +100,15 @@ def safe(line):
 
 
 def only_ours(app, what, name, thing, skip, options):
-    """Leave out what a module imports from other libraries."""
-    return skip or (what == "module" and not getattr(thing, "__module__", "course_lib").startswith("course_lib"))
+    """Leave out what a module imports from other libraries, and fields that only have a number."""
+    other = what == "module" and not getattr(thing, "__module__", "course_lib").startswith("course_lib")
+    return skip or other or str(thing.__doc__).startswith("Alias for field number")
 
 
 def shorten_titles(app, env):
     """In the sidebar, a title ends at its colon."""
-    for title in env.titles.values():
+    entries = [next(iter(contents.findall(reference)), None) for contents in env.tocs.values()]
+    for title in [*env.titles.values(), *filter(None, entries)]:
         title.children = [Text(title.astext().split(":")[0])]
 
 
