@@ -39,7 +39,7 @@ NAMED = re.compile(r"([Ee]quations?|[Ee]qs?\.?)(?: \([\dF.]+\),?| to| and| or)* 
 NAMED_AT_HOME = re.compile(r"(?:\b(?:by|in|of|to|with|from|like|and|or|than|through|into|for)|^) $", re.M)
 
 NAVIGATION = re.compile(r"^.*\[all lessons\]\(.*$", re.M)  # the site has its own
-LAST_STEP = re.compile(r"<details>(?:(?!<details>).)*</details>\s*\Z", re.S)
+LAST_STEP = re.compile(r"<details>\s*<summary>([^<]*)</summary>(?:(?!<details>).)*</details>\s*\Z", re.S)
 TOLERANCE = re.compile(r"\n# numbers within .*")  # for the test of the stored outputs
 STORED_RUN = """
 
@@ -168,7 +168,8 @@ def lesson_page(site: Site, page: str, lesson: Assignment) -> nbformat.NotebookN
     for cell in notebook.cells:
         if cell.cell_type == "markdown":
             text = NAVIGATION.sub("", cell.source).strip()
-            text = LAST_STEP.sub("<p>The last step is in the notebook.</p>", text) if tag_of(cell) == "hint" else text
+            if tag_of(cell) == "hint":
+                text = LAST_STEP.sub(r"<p>\1: in the notebook.</p>", text)
             cell.source = site.text(text, page)
             continue
         cell.source = TOLERANCE.sub("", cell.source)

@@ -13,7 +13,8 @@ SITE = json.loads((HERE / "site.json").read_text(encoding="utf-8"))
 
 project = html_title = "Indoor localization by doing it"
 author = copyright = ""
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax", "sphinx_codeautolink"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"]
+extensions += ["sphinx_codeautolink", "sphinx_copybutton"]
 root_doc = "index"
 exclude_patterns = [".doctrees", "extra", "contents.txt"]
 
