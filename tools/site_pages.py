@@ -131,11 +131,12 @@ class Site:
         keys = [self.shown[page][number] for number in found[1].split(", ")]
         here = [self.functions[one] for one in keys if one in self.functions and self.homes[one] == page]
         api = relative("api/", page)
+        equation = found[0].replace(r"\\", r"\cr ")  # Sphinx puts lines that end in two strokes where no tag may stand
         code = " ".join(
             f'<a href="{api}/{module}.html#course_lib.{module}.{name}"><code>{name}</code></a>' for module, name in here
         )
         said = f'\n\n<p class="in-code">In code: {code}</p>\n' if here else ""
-        return "".join(f'<div class="equation" id="eq-{one}"></div>' for one in keys) + f"\n\n{found[0]}{said}"
+        return "".join(f'<div class="equation" id="eq-{one}"></div>' for one in keys) + f"\n\n{equation}{said}"
 
 
 def write_source(folder: Path, repository: str = "") -> None:
@@ -176,7 +177,7 @@ def lesson_page(site: Site, page: str, lesson: Assignment) -> nbformat.NotebookN
         imports = all(isinstance(node, ast.Import | ast.ImportFrom) for node in ast.parse(cell.source).body)
         hidden = "remove-input" if re.search(r"^predict\(", cell.source, re.M) else ""
         hidden = "hide-input" if imports or re.search(r"^recall\(", cell.source, re.M) else hidden
-        cell.metadata["tags"] = [*cell.metadata.get("tags", []), hidden]
+        cell.metadata["tags"] = [*cell.metadata.get("tags", []), *hidden.split()]
         cell.outputs = [] if tag_of(cell) == "check" else cell.outputs  # "not attempted yet"
         for output in cell.outputs:
             if "text/html" in output.get("data", {}):

@@ -123,7 +123,7 @@ def test_every_page_opens_with_the_network_blocked_fits_a_phone_and_has_no_serio
         page.set_viewport_size(DESK)
         page.goto(address + name)
         page.wait_for_function(MATHEMATICS_IS_SET)
-        if told := serious_findings(page, "body"):
+        if told := serious_findings(page, "body") or page.locator("mjx-merror").all_inner_texts():
             found[name] = told
         page.set_viewport_size(PHONE)
         page.goto(address + name)

@@ -28,6 +28,7 @@ myst_dmath_double_inline = True
 autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
 add_module_names = False
+toc_object_entries_show_parents = "hide"
 autodoc_preserve_defaults = True
 napoleon_google_docstring = False
 python_use_unqualified_type_names = True
@@ -69,8 +70,16 @@ codeautolink_concat_default = True
 
 def as_rst(app, what, name, thing, options, lines):
     """Write a compact docstring as reStructuredText: indented equations, names in backticks, what it cites as links."""
-    written, literal, in_sections = [], False, False
+    written, literal, in_sections, directive = [], False, False, None
     for line in lines:
+        indentation = len(line) - len(line.lstrip())
+        if directive is not None and line.strip() and indentation <= directive:
+            directive = None
+        if line.lstrip().startswith(".. "):
+            directive = indentation
+        if directive is not None:  # such as ".. math::"
+            written.append(line)
+            continue
         in_sections = in_sections or re.fullmatch(r"-{3,}", line) is not None
         in_table = re.match(r"[\w/*]+ {2,}\S", line) is not None
         indented = (line.startswith("    ") or in_table) and not in_sections
@@ -87,9 +96,9 @@ def as_rst(app, what, name, thing, options, lines):
 
 def safe(line):
     """Return a line in which stars, bars and final underscores are themselves, with links to the equations it cites."""
-    parts = re.split(r"(``.*?``|`[^`]*`)", line)
+    parts = re.split(r"(:\w+:`[^`]*`|``.*?``|`[^`]*`)", line)
     parts[::2] = [re.sub(r"\*(?![a-z ]+\*)(?<![a-z]\*)|\||(?<=\w)_(?!\w)", r"\\\g<0>", part) for part in parts[::2]]
-    parts[1::2] = [f"``{part.strip('`')}``" for part in parts[1::2]]
+    parts[1::2] = [part if part.startswith(":") else f"``{part.strip('`')}``" for part in parts[1::2]]
     line = "".join(parts)
     cited = re.search(r"Source:\s+paper (\d),\s+eqs?\.?\s", line)
 
