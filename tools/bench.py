@@ -58,7 +58,7 @@ def run_tools(arguments: argparse.Namespace) -> int:
     require_output_folder(arguments.out)
     if arguments.recording and not (arguments.recording / "map.ply").is_file():
         raise ValueError(f"--recording {arguments.recording} holds no map.ply: see data/README.md for the format")
-    why = None if arguments.no_tools else install_tools()
+    why = None if arguments.no_tools else install_beside(LOCK, TOOLS)
     if why:
         print(f"The tools to compare with could not be installed, and are left out: {why}", file=sys.stderr)
     with run_folder(arguments.out, "bench") as out:
@@ -112,20 +112,20 @@ def measured(program: str, *words: str) -> dict:
     return json.loads(done.stdout.splitlines()[-1])
 
 
-def install_tools() -> str | None:
-    """Bring `.bench` to what environment-bench.txt says; None, or why it could not be done."""
-    wanted = hashlib.sha256(LOCK.read_bytes()).hexdigest()
-    stamp = TOOLS / STAMP
+def install_beside(lock: Path, folder: Path) -> str | None:
+    """Bring a folder beside the environment to what `lock` says; None, or why it could not be done."""
+    wanted = hashlib.sha256(lock.read_bytes()).hexdigest()
+    stamp = folder / STAMP
     if stamp.is_file() and stamp.read_text(encoding="utf-8") == wanted:
         return None
-    if TOOLS.exists() and any(TOOLS.iterdir()) and not stamp.is_file():
-        return f"{TOOLS} was not made by this command; move it away"
-    print("Installing the tools to compare with into .bench, a minute or two ...", file=sys.stderr)
-    shutil.rmtree(TOOLS, ignore_errors=True)
-    TOOLS.mkdir()
+    if folder.exists() and any(folder.iterdir()) and not stamp.is_file():
+        return f"{folder} was not made by this command; move it away"
+    print(f"Installing what {lock.name} names into {folder.name}, a minute or two ...", file=sys.stderr)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
     stamp.write_text("unfinished", encoding="utf-8")
     pip = [sys.executable, "-P", "-m", "pip", "install", "--quiet", "--no-deps", "--disable-pip-version-check"]
-    command = [*pip, "--target", str(TOOLS), "-r", str(LOCK)]
+    command = [*pip, "--target", str(folder), "-r", str(lock)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         lines = [line for line in done.stderr.splitlines() if line.startswith("ERROR")] or done.stderr.splitlines()
