@@ -92,7 +92,7 @@ def test_the_table_with_intervals_is_what_the_sweep_prints_of_its_stored_rows(tm
 
 
 SIX_DEGREES = ["corridor/kitchen_six_degrees", "corridor/kitchen_icp", "corridor/kitchen_ablation", "corridor/hand_1-5"]
-SIX_DEGREES += ["corridor/hololens_rooms", "room/walk_11-20"]
+SIX_DEGREES += ["corridor/hololens_rooms", "room/walk_41-50"]
 
 
 @pytest.mark.parametrize("name", SIX_DEGREES)
@@ -100,9 +100,12 @@ def test_the_tables_in_six_degrees_are_what_the_commands_print_of_their_stored_n
     assert is_quoted(six_degrees_table(stored(f"{name}.json")["rows"]))
 
 
-@pytest.mark.parametrize("name", ["lost_kitchen", "lost_corridor"])
+LOST = ["corridor/lost_kitchen", "corridor/lost_hololens", "corridor/lost_corridor", "room/lost_rooms"]
+
+
+@pytest.mark.parametrize("name", LOST)
 def test_lost_and_found_is_what_the_command_prints_of_its_stored_trials(name):
-    found = stored(f"corridor/{name}.json")
+    found = stored(f"{name}.json")
     again = {"seeds": found["seeds"], **summarize(found["trials_in_full"])}
     assert again == {key: found[key] for key in again}
     assert is_quoted(lost_table(again))

@@ -38,7 +38,8 @@ RUN = """wholly => {
 STATES = """() => window.jupyterapp.shell.currentWidget.content.widgets
     .filter(cell => cell.model.type === 'code')
     .map(cell => [cell.model.executionCount, cell.model.outputs.toJSON().some(o => o.output_type === 'error')])"""
-AXE = """where => axe.run({include: [[where]]}, {resultTypes: ['violations'], preload: false}).then(result => result.violations.flatMap(
+AXE = """where => axe.run({include: [[where]]}, {resultTypes: ['violations'], preload: false})
+    .then(result => result.violations.flatMap(
     rule => rule.nodes.map(node => [rule.id, rule.impact, node.target.flat().join(' '), node.html.slice(0, 300)])))"""
 # Milliseconds from the next event of a kind (a key, a click) to the first new picture in the panel, ready to paint.
 EVENT_TO_PICTURE = """([panel, event]) => new Promise((resolve, reject) => {
