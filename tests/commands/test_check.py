@@ -58,7 +58,7 @@ def test_opengl_that_cannot_start_is_optional_with_its_cure_and_what_is_lost(mon
     lines = capsys.readouterr().out.splitlines()
     assert lines[1].startswith("LACK, which is optional: no depth image by OpenGL")
     assert "3D scenes have no picture" in lines[1]
-    assert lines[-1] == "All 1 OK."
+    assert lines[-1] == "All 2 OK."  # raster and the memory
 
 
 @pytest.mark.parametrize(("code", "said"), [(-11, "signal 11: last"), (None, "no answer in time"), (1, "code 1: last")])
