@@ -145,6 +145,8 @@ def write_source(folder: Path, repository: str = "") -> None:
     shutil.copytree(SETTINGS, folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
     scenes = folder / "extra" / "notebooks" / "scenes"
     shutil.copytree(notebooks / "scenes", scenes, ignore=shutil.ignore_patterns("yours"))
+    for pictures in (folder / "notebooks" / "pictures", scenes.with_name("pictures")):  # for Markdown, for HTML
+        shutil.copytree(notebooks / "pictures", pictures)
     for page, lesson in site.lessons.items():
         write(folder / page, nbformat.writes(lesson_page(site, page, lesson)) + "\n")
     for page in site.markdown:
