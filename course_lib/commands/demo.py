@@ -155,7 +155,8 @@ def run(arguments: argparse.Namespace) -> int:
     from course_lib.experiments.runner import Runner
 
     experiment = importlib.import_module(f"course_lib.experiments.{name}")
-    command = f"demo {name}" + f" frames {parameters['frames']}" * bool(parameters.get("frames"))
+    frames = parameters.get("frames")
+    command = f"demo {name} frames {frames}" if frames else f"demo {name}"
     kept = arguments.out or REPOSITORY / "results" / command.replace(" ", "_")
     with temporary_folder() as temporary:
         outcome = experiment.run(Runner(kept, temporary, processes, progress_bar), **parameters)
