@@ -76,8 +76,8 @@ from course_lib.depth_mcl.uncertainty import Tempered, temper
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 
-# All chosen on the kitchen and the shipped corridor; SEEN and those of rivals on walks through rooms, seeds 10,041 to
-# 10,066, and on a HoloLens's rooms.
+# All chosen on the kitchen and the shipped corridor; SEEN, IMAGE_FIRST and those of rivals on walks through rooms, too,
+# seeds 10,041 to 10,066, and on a HoloLens's rooms.
 APART = 0.2  # of the prediction's spread: two particles nearer than this are one hypothesis
 DISTINCT = np.array([0.02, np.deg2rad(1.0)])  # metres, radians: the same for two refined poses
 SURE = np.array([0.06, np.deg2rad(3.0)])  # metres, radians: a cloud so small needs few particles
