@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Set the course up and start it: `python3 course.py lab`, `python3 course.py test`.
 
-The standard library only. The first call makes `.venv` from environment.txt with course_lib. `test` adds the rest
-of environment-test.txt. Every call then hands over to `python -m course_lib` there. What it says goes to stderr.
+The standard library only. The first call makes `.venv` from environment.txt with course_lib and courseware. `test`
+adds the rest of environment-test.txt. Every call then hands over to `python -m courseware` there. What it says goes to
+stderr.
 A `.venv` without `course-made` is not ours and never touched. `course-ready.json` is written last: without it, `.venv`
 is made anew. Even Python 3.6 must be able to read this file, so that it can say that it is too old.
 """
@@ -58,7 +59,7 @@ def main(arguments):
             if HELP & set(arguments):
                 return command_line().main(["--help"])
             set_up(lock)
-        command = [PYTHON, "-P", "-m", "course_lib", *arguments]
+        command = [PYTHON, "-P", "-m", "courseware", *arguments]
         if os.name == "nt":  # execve does not wait there
             return subprocess.call(command, env=clean_environment())
         os.execve(PYTHON, command, clean_environment())
@@ -73,10 +74,10 @@ def main(arguments):
 
 
 def command_line():
-    """course_lib.cli. It imports only the standard library, so it works before .venv is there."""
+    """courseware.cli. It imports only the standard library, so it works before .venv is there."""
     sys.path.append(ROOT)
     sys.dont_write_bytecode = True  # help leaves no file behind
-    return importlib.import_module("course_lib.cli")
+    return importlib.import_module("courseware.cli")
 
 
 def clean_environment():
@@ -92,7 +93,7 @@ def put(path, text):
 def wanted(lock):
     """What `.venv` must have been made from: the lock, the package's metadata, this folder, and its Python."""
     digest = hashlib.sha256()
-    for name in (lock, "pyproject.toml"):
+    for name in (lock, "pyproject.toml", os.path.join("courseware", "pyproject.toml")):
         with open(os.path.join(ROOT, name), "rb") as file:
             digest.update(file.read())
     return {"environment": digest.hexdigest(), "lock": lock, "folder": ROOT, "python": os.path.realpath(PYTHON)}
@@ -130,7 +131,7 @@ def set_up(lock):
         if anew:
             make_venv()
         install(lock)
-        run([PYTHON, "-P", "-m", "course_lib.commands.warm_up"])  # what fails here is told by `check`
+        run([PYTHON, "-P", "-m", "courseware.commands.warm_up"])  # what fails here is told by `check`
         put(READY, json.dumps(wanted(lock), indent=1))
 
 
@@ -164,7 +165,7 @@ def make_venv():
 
 
 def install(lock):
-    """Install the pinned packages and course_lib itself. Meanwhile the stamp is away: `.venv` is half-made."""
+    """Install the pinned packages, then course_lib and courseware in place. Meanwhile the stamp is away."""
     say("Installing the environment into .venv, a minute or a few ...")
     if os.path.exists(READY):
         os.replace(READY, READY + ".earlier")
@@ -173,7 +174,8 @@ def install(lock):
     for pip in [*installers, [PYTHON, "-P", "-m", "pip", "install"]]:
         code, output = run([*pip, "--no-deps", "-r", os.path.join(ROOT, lock)], counted=True)
         if not code:
-            code, output = run([*pip, "--no-deps", "--no-build-isolation", "-e", ROOT])
+            ours = ["-e", ROOT, "-e", os.path.join(ROOT, "courseware")]
+            code, output = run([*pip, "--no-deps", "--no-build-isolation", *ours])
             break
     if code:
         if os.path.exists(READY + ".earlier"):  # those packages are still there, and the next call tries again

@@ -10,18 +10,14 @@ import math
 import os
 import re
 import struct
-import sys
 import tempfile
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from datetime import datetime
 from itertools import accumulate
 from pathlib import Path
 from typing import NamedTuple, NoReturn
 
 import numpy as np
-
-from course_lib.paths import REPOSITORY
 
 MEGABYTE = 1_000_000
 
@@ -249,23 +245,6 @@ def staging_dir(out: str | Path, products: Sequence[str] = ()) -> Iterator[Path]
         for path in earlier:
             if path.relative_to(out) not in made:
                 path.unlink()
-
-
-@contextlib.contextmanager
-def run_folder(out: str | Path | None, command: str) -> Iterator[Path]:
-    """Yield a folder for the results of one run of `command`, and say where they are when the body has ended.
-
-    out: None makes `results/COMMAND/TIME`. `run.json` is written last: a folder without it is not whole.
-    """
-    if out is None:
-        out = REPOSITORY / "results" / command.replace(" ", "_") / datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
-    out = Path(out)
-    with staging_dir(out) as new:
-        yield new
-        (out / "run.json").unlink(missing_ok=True)
-        files = sorted(path.relative_to(new).as_posix() for path in new.rglob("*") if path.is_file())
-    atomic_write(out / "run.json", json.dumps({"command": command, "files": files}, indent=1) + "\n")
-    print(f"results: {out}", file=sys.stderr)
 
 
 def require_writable(folder: str | Path) -> None:

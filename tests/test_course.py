@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from course_lib import __version__
-from course_lib.cli import usage
+from courseware.cli import usage
 
 ROOT = Path(__file__).resolve().parents[1]
 COURSE = ROOT / "course.py"
@@ -22,11 +22,11 @@ PYPROJECT = '[build-system]\nrequires = []\nbuild-backend = "backend"\nbackend-p
 BACKEND = """
 import pathlib, zipfile
 def build_editable(folder, config_settings=None, metadata_directory=None):
-    name = "course_lib-1-py3-none-any.whl"
+    name = "NAME-1-py3-none-any.whl"
     with zipfile.ZipFile(pathlib.Path(folder) / name, "w") as wheel:
-        wheel.writestr("course_lib.pth", str(pathlib.Path.cwd()))
-        info = "course_lib-1.dist-info"
-        wheel.writestr(info + "/METADATA", "Metadata-Version: 2.1\\nName: course-lib\\nVersion: 1\\n")
+        wheel.writestr("NAME.pth", "ROOT")
+        info = "NAME-1.dist-info"
+        wheel.writestr(info + "/METADATA", "Metadata-Version: 2.1\\nName: NAME\\nVersion: 1\\n")
         wheel.writestr(info + "/WHEEL", "Wheel-Version: 1.0\\nRoot-Is-Purelib: true\\nTag: py3-none-any\\n")
         wheel.writestr(info + "/RECORD", "")
     return name
@@ -43,15 +43,17 @@ HANGS_S = 1200  # no call takes so long, however busy the machine is
 def copy(tmp_path):
     """A folder with course.py, an environment of no package, and a package that says that it was called."""
     folder = tmp_path / "course"
-    (folder / "course_lib").mkdir(parents=True)
+    for name in ("course_lib", "courseware"):
+        (folder / name).mkdir(parents=True)
     (folder / "course.py").write_bytes(COURSE.read_bytes())
     for name in ("environment.txt", "environment-test.txt"):
         (folder / name).write_text("# nothing\n")
-    (folder / "pyproject.toml").write_text(PYPROJECT)
-    (folder / "backend.py").write_text(BACKEND)
-    for name in ("__init__.py", "cli.py"):
-        (folder / "course_lib" / name).write_bytes((ROOT / "course_lib" / name).read_bytes())
-    (folder / "course_lib" / "__main__.py").write_text(HANDED_OVER)
+    for project, name in ((folder, "course_lib"), (folder / "courseware", "courseware")):
+        (project / "pyproject.toml").write_text(PYPROJECT)
+        (project / "backend.py").write_text(BACKEND.replace("NAME", name).replace("ROOT", str(folder)))
+    for name in ("course_lib/__init__.py", "courseware/__init__.py", "courseware/cli.py"):
+        (folder / name).write_bytes((ROOT / name).read_bytes())
+    (folder / "courseware" / "__main__.py").write_text(HANDED_OVER)
     return folder
 
 
@@ -78,7 +80,7 @@ def test_an_old_python_can_read_the_file_and_is_told_which_one_is_needed(copy):
     tree = ast.parse(COURSE.read_text(encoding="utf-8"), feature_version=(3, 6))
     named = {a.name for node in ast.walk(tree) if isinstance(node, ast.Import) for a in node.names}
     named |= {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
-    assert {name.split(".")[0] for name in named} <= set(sys.stdlib_module_names) | {"course_lib"}
+    assert {name.split(".")[0] for name in named} <= set(sys.stdlib_module_names)
     done = call(copy, "check", prelude="sys.version_info = (3, 10, 99)")
     assert done.returncode == 1
     assert "needs Python 3.11 or newer; this is 3.10" in done.stderr
@@ -94,7 +96,7 @@ def test_help_before_any_set_up_lists_the_commands_and_installs_nothing(copy, ar
 
 def test_the_version_is_told_before_any_set_up_and_the_packages_is_the_same(copy):
     done = call(copy, "--version")
-    assert (done.returncode, done.stdout) == (0, "1.0\n")
+    assert (done.returncode, done.stdout) == (0, "2.0\n")
     assert not (copy / ".venv").exists()
     assert __version__ == tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["version"]
 

@@ -16,9 +16,9 @@ from course_lib.files import (
     read_image,
     read_json,
     read_text,
-    run_folder,
     staging_dir,
 )
+from courseware.run_folder import run_folder
 from tests.fuzz import damage
 
 

@@ -1,4 +1,4 @@
-"""`pip install .` gives the two methods alone; two files lock pyproject.toml's ranges in full; arrows."""
+"""`pip install .` gives course_lib alone; two files lock pyproject.toml's ranges in full; arrows."""
 
 import ast
 import importlib.metadata
@@ -17,7 +17,6 @@ ROOT = Path(__file__).resolve().parents[1]
 LOCK = ROOT / "environment-test.txt"
 STUDENTS = ROOT / "environment.txt"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
-METHODS = ("geometry.py", "rendering", "depth_mcl", "spherical_stereo", "beyond")
 # What only the lessons, the commands or the tests have.
 LESSONS_ONLY = ("jupyterlab", "ipywidgets", "IPython", "matplotlib", "pyvista", "tqdm", "pytest", "nbval")
 
@@ -55,12 +54,6 @@ def imported_packages(path):
             yield node.module.split(".")[0]
 
 
-def method_files():
-    for name in METHODS:
-        path = ROOT / "course_lib" / name
-        yield from [path] if path.is_file() else sorted(path.rglob("*.py"))
-
-
 @pytest.mark.slow
 def test_the_methods_import_and_run_without_what_only_the_lessons_have():
     done = subprocess.run(
@@ -72,7 +65,7 @@ def test_the_methods_import_and_run_without_what_only_the_lessons_have():
 def test_what_the_methods_import_is_what_is_installed_with_them():
     distributions = importlib.metadata.packages_distributions()
     installed = {canonicalize_name(Requirement(line).name) for line in PROJECT["dependencies"]}
-    for path in method_files():
+    for path in sorted((ROOT / "course_lib").rglob("*.py")):
         for name in set(imported_packages(path)) - set(sys.stdlib_module_names) - {"course_lib"}:
             owners = {canonicalize_name(owner) for owner in distributions[name]}
             assert owners & installed, f"{path.relative_to(ROOT)} imports {name}, which `pip install .` does not bring"
@@ -80,9 +73,10 @@ def test_what_the_methods_import_is_what_is_installed_with_them():
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
-    """Names of the files that setuptools would install, from a build of a copy of the package."""
+    """Names of the files that setuptools would install, from a build of a copy of both packages."""
     folder = tmp_path_factory.mktemp("build")
-    shutil.copytree(ROOT / "course_lib", folder / "course_lib", ignore=shutil.ignore_patterns("__pycache__"))
+    for package in ("course_lib", "courseware"):
+        shutil.copytree(ROOT / package, folder / package, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, folder)
     command = [sys.executable, "-c", "from setuptools import setup; setup()", "-q", "build", "--build-lib", "built"]
@@ -91,14 +85,14 @@ def built(tmp_path_factory):
     return {path.relative_to(folder / "built").as_posix() for path in (folder / "built").rglob("*") if path.is_file()}
 
 
-def test_every_file_of_the_package_is_installed(built):
+def test_every_file_of_the_library_is_installed_and_nothing_else(built):
     there = {
         path.relative_to(ROOT).as_posix()
         for path in (ROOT / "course_lib").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts and not re.search(r"\.pyc$|/\.", path.as_posix())
     }
     assert built == there
-    assert {"course_lib/py.typed", "course_lib/lessons/lesson_11/sphere_scene.html"} <= built
+    assert "course_lib/py.typed" in built
 
 
 def locked(text):

@@ -14,7 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from course_lib.files import atomic_write, run_folder
+from course_lib.files import atomic_write
+from courseware.run_folder import run_folder
 
 pytest.importorskip("resource", reason="kill -9 is POSIX's")
 ROOT = Path(__file__).parents[1]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from course_lib.paths import data_path, notebook_paths
+from courseware.paths import data_path, notebook_paths
 
 
 def test_data_and_lessons_are_found_from_anywhere_and_what_is_missing_is_named(tmp_path, monkeypatch):

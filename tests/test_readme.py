@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib import cli
-from course_lib.cli import find_command
-from course_lib.experiments.bearing_only import bearing_table
-from course_lib.experiments.corridor import table_1
-from course_lib.experiments.finale import finale_text
-from course_lib.experiments.intervals import wilson_percent
-from course_lib.experiments.lost import lost_table, summarize
-from course_lib.experiments.six_degrees import six_degrees_table
-from course_lib.experiments.trouble import trouble_table
+from courseware import cli
+from courseware.cli import find_command
+from courseware.experiments.bearing_only import bearing_table
+from courseware.experiments.corridor import table_1
+from courseware.experiments.finale import finale_text
+from courseware.experiments.intervals import wilson_percent
+from courseware.experiments.lost import lost_table, summarize
+from courseware.experiments.six_degrees import six_degrees_table
+from courseware.experiments.trouble import trouble_table
 from tools import sweep
 from tools.bench_tables import bench_table
 
@@ -160,7 +160,7 @@ def test_the_examples_of_the_readme_fit_their_commands_and_read_shipped_files():
     assert [call.split()[0] for call in calls] == ["localize", "locate", "stereo"]
     for call in calls:
         name, rest = find_command(call.split())
-        cli.parse(name, importlib.import_module(f"course_lib.commands.{name}"), rest)
+        cli.parse(name, importlib.import_module(f"courseware.commands.{name}"), rest)
         assert [word for word in rest if word.startswith("data/") and not (ROOT / word).exists()] == []
 
 

@@ -10,9 +10,9 @@ import nbformat
 import numpy as np
 import pytest
 
-from course_lib.cli import COMMANDS, find_command, parse
-from course_lib.lessons.kit.exercises import find_exercise, judge, lesson_exercises
-from course_lib.paths import REPOSITORY, foundation_paths, notebook_paths, project_paths
+from courseware.cli import COMMANDS, find_command, parse
+from courseware.lessons.kit.exercises import find_exercise, judge, lesson_exercises
+from courseware.paths import REPOSITORY, foundation_paths, notebook_paths, project_paths
 from tools.bench_tables import capacity_sentence, lessons_rows
 from tools.refresh import solution_cell, stub_cell
 
@@ -109,7 +109,7 @@ def test_every_command_is_one_with_these_options_and_every_link_leads_somewhere(
         found = find_command(words)
         assert found, f"course.py {line}: {', '.join(COMMANDS)}"
         name, rest = found
-        module = import_module(f"course_lib.commands.{COMMANDS[name][0]}")
+        module = import_module(f"courseware.commands.{COMMANDS[name][0]}")
         if rest:
             parse(name, module, rest)
     for target in re.findall(r"\]\(([^)#]+)\)", TEACHING):
@@ -145,7 +145,7 @@ def test_the_example_exercise_is_one(tmp_path):
     code = re.search(r"```python\n(.*?)```", TEACHING, re.S)[1]
     cells = re.split(r"^%% ", re.search(r"```\n(%% .*?)```", TEACHING, re.S)[1], flags=re.M)[1:]
     assert [cell.partition("\n")[0] for cell in cells] == ["task", "exercise", "check", "hint", "solution"]
-    imports = "import numpy as np\n\nfrom course_lib.lessons.kit.exercises import Exercise\n\n\n"
+    imports = "import numpy as np\n\nfrom courseware.lessons.kit.exercises import Exercise\n\n\n"
     (tmp_path / "example.py").write_text(imports + code)
     spec = spec_from_file_location("example", tmp_path / "example.py")
     example = module_from_spec(spec)

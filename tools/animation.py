@@ -26,10 +26,10 @@ from course_lib.depth_mcl import (
 )
 from course_lib.files import atomic_write
 from course_lib.geometry import state_from_optical_pose
-from course_lib.paths import REPOSITORY, data_path
-from course_lib.plots import figures
-from course_lib.plots.corridor_figures import floor_plan
 from course_lib.rendering.sensor import subsample_depth
+from courseware.paths import REPOSITORY, data_path
+from courseware.plots import figures
+from courseware.plots.corridor_figures import floor_plan
 
 PICTURE = REPOSITORY / "notebooks" / "pictures" / "filter.webp"
 N_PARTICLES, N_FRAMES, EVERY, BETA = 800, 32, 2, 0.1
@@ -96,6 +96,6 @@ def run(arguments: Namespace) -> int:
 
 
 if __name__ == "__main__":
-    from course_lib.cli import tool
+    from courseware.cli import tool
 
     sys.exit(tool("tools.animation"))

@@ -13,8 +13,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from course_lib.commands.arguments import require_output_folder
-from course_lib.files import run_folder
+from courseware.commands.arguments import require_output_folder
+from courseware.run_folder import run_folder
 from tools.bench_tables import bench_table, capacity_sentence, lessons_rows, renders_heading, renders_rows
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -135,6 +135,6 @@ def install_beside(lock: Path, folder: Path) -> str | None:
 
 
 if __name__ == "__main__":
-    from course_lib.cli import tool
+    from courseware.cli import tool
 
     sys.exit(tool("tools.bench"))

@@ -11,12 +11,11 @@ import trimesh
 from numpy.random import Generator
 
 from course_lib.files import staging_dir
-from course_lib.paths import data_path
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor.mesh_building import WorldMesh, to_polydata, write_ply, write_world_ply
-from course_lib.simulation.corridor.planar_map import planar_simplification
-from course_lib.simulation.corridor.recorded_runs import (
+from courseware.paths import data_path
+from courseware.simulation.corridor.mesh_building import WorldMesh, to_polydata, write_ply, write_world_ply
+from courseware.simulation.corridor.recorded_runs import (
     FRAME_RATE,
     FloorSurveyModel,
     HandModel,
@@ -25,13 +24,14 @@ from course_lib.simulation.corridor.recorded_runs import (
     steps_and_turns,
     wagon_run,
 )
-from course_lib.simulation.corridor.seeded_recording import SeedModels, record
-from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
-from course_lib.simulation.corridor.world import LENGTH, make_corridor
-from course_lib.simulation.data_folder import checksums, parameter_table, parameter_tables
-from course_lib.simulation.sensors.laser_survey import STATIONS, ScannerModel, registration_error, survey
-from course_lib.simulation.sensors.ray_casting import WorldCaster
-from course_lib.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
+from courseware.simulation.corridor.seeded_recording import SeedModels, record
+from courseware.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
+from courseware.simulation.corridor.world import LENGTH, make_corridor
+from courseware.simulation.data_folder import checksums, parameter_table, parameter_tables
+from courseware.simulation.sensors.laser_survey import STATIONS, ScannerModel, registration_error, survey
+from courseware.simulation.sensors.ray_casting import WorldCaster
+from courseware.simulation.sensors.time_of_flight import TimeOfFlightCamera, TimeOfFlightModel
+from tools.planar_map import planar_simplification
 
 # What is made; other files of the folder (its README) stay.
 MADE = ("true_world.ply", "map.ply", "planar_map.ply", "wagon", "hand", "summary.json", "PARAMETERS.md")

@@ -12,7 +12,7 @@ from html import escape
 from itertools import zip_longest
 
 from course_lib.files import atomic_write
-from course_lib.paths import REPOSITORY
+from courseware.paths import REPOSITORY
 
 NOTEBOOKS = REPOSITORY / "notebooks"
 WIDTH, HEIGHT, GAP, MARGIN = 420, 58, 26, 42  # of the chart, of a box, between boxes, beside boxes: pixels
@@ -75,6 +75,6 @@ def run(arguments: Namespace) -> int:
 
 
 if __name__ == "__main__":
-    from course_lib.cli import tool
+    from courseware.cli import tool
 
     sys.exit(tool("tools.flow_charts"))

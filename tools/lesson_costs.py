@@ -20,8 +20,8 @@ from urllib.request import urlopen
 import nbformat
 import psutil
 
-from course_lib.commands.lab import lab_command
 from course_lib.files import temporary_folder
+from courseware.commands.lab import lab_command
 from tools.refresh import HANGS_S, execute
 
 EVERY_S = 0.1  # between two looks at the processes; the kernel's own peak is the system's, which misses nothing

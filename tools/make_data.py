@@ -9,10 +9,10 @@ import json
 import sys
 from pathlib import Path
 
-from course_lib.commands.arguments import require_output_folder, require_processes, require_seed
-from course_lib.commands.output import progress_bar
 from course_lib.files import staging_dir
-from course_lib.paths import data_path
+from courseware.commands.arguments import require_output_folder, require_processes, require_seed
+from courseware.commands.output import progress_bar
+from courseware.paths import data_path
 
 DATA = Path(__file__).resolve().parents[1] / "data"
 SHIPPED = {
@@ -76,12 +76,12 @@ def make_shipped(arguments: argparse.Namespace) -> int:
         made = make_corridor_data(out, seed, progress=lambda items, text: progress_bar(text, "part")(items))
         told = json.dumps(made["measured"], indent=2)
     elif name == "room":
-        from course_lib.simulation.room.data import make_room_data
+        from courseware.simulation.room.data import make_room_data
 
         made = make_room_data(out, seed, progress=progress_bar("photographs", "pair"))
         told = f"{made['pairs']} pairs of a room with {made['objects']} objects"
     else:
-        from course_lib.simulation.room.finale_data import make_finale_data
+        from courseware.simulation.room.finale_data import make_finale_data
 
         made = make_finale_data(out, seed)
         told = f"the maps of a room with {made['objects']} objects, {made['triangles']} triangles"
@@ -95,8 +95,8 @@ def make_projects(arguments: argparse.Namespace) -> int:
     require_processes("--processes", arguments.processes)
     require_output_folder(out)
     require_output_folder(arguments.work, "--work")
-    from course_lib.lessons.project_2.rooms import make_project_rooms
-    from course_lib.simulation.data_folder import checksums
+    from courseware.lessons.project_2.rooms import make_project_rooms
+    from courseware.simulation.data_folder import checksums
 
     with staging_dir(out) as new:
         bar = progress_bar("rooms", "room")
@@ -113,7 +113,7 @@ def make_training_rooms(arguments: argparse.Namespace) -> int:
         if value < least:
             raise ValueError(f"{option} must be at least {least}; got {value}")
     require_output_folder(arguments.out)
-    from course_lib.simulation.room.training_images import make_room_images
+    from tools.training_images import make_room_images
 
     images = make_room_images(arguments.out, *asked, progress_bar("rooms", "room"))
     print(f"{arguments.out}: {len(images)} pictures of {len({image['room_seed'] for image in images})} rooms")
@@ -121,6 +121,6 @@ def make_training_rooms(arguments: argparse.Namespace) -> int:
 
 
 if __name__ == "__main__":
-    from course_lib.cli import tool
+    from courseware.cli import tool
 
     sys.exit(tool("tools.make_data"))

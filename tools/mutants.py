@@ -112,6 +112,6 @@ def tests_say(root: Path, tests: Sequence[str | Path], seconds: float, *options:
 
 
 if __name__ == "__main__":
-    from course_lib.cli import tool
+    from courseware.cli import tool
 
     sys.exit(tool("tools.mutants"))

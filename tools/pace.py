@@ -15,7 +15,7 @@ from typing import NamedTuple
 import nbformat
 
 from course_lib.files import atomic_write
-from course_lib.paths import REPOSITORY, numbered_paths
+from courseware.paths import REPOSITORY, numbered_paths
 
 WORDS_A_MINUTE, LINES_A_MINUTE, A_FIGURE, A_PANEL = 130, 10, 1, 8
 AN_EXERCISE = {"warm-up": 4, "core": 9, "challenge": 30}
@@ -146,6 +146,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 if __name__ == "__main__":
-    from course_lib.cli import tool
+    from courseware.cli import tool
 
     sys.exit(tool("tools.pace"))

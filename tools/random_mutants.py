@@ -147,6 +147,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 if __name__ == "__main__":
-    from course_lib.cli import tool
+    from courseware.cli import tool
 
     sys.exit(tool("tools.random_mutants"))

@@ -16,7 +16,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from course_lib.paths import REPOSITORY
+from courseware.paths import REPOSITORY
 
 REAL = REPOSITORY.parent / "shared" / "real"
 KITCHEN = f"--map {REAL}/kinect_kitchen/map.ply --sequence {REAL}/kinect_kitchen"
@@ -67,7 +67,7 @@ def record(tree: Path, out: Path, python: str, names: list[str]) -> None:
         words = [*RUNS[name].split(), "--json", "--out", str(out / name)]
         environment = os.environ | {"PYTHONPATH": str(tree)}
         done = subprocess.run(
-            [python, "-m", "course_lib", *words], cwd=tree, env=environment, capture_output=True, text=True, check=False
+            [python, "-m", "courseware", *words], cwd=tree, env=environment, capture_output=True, text=True, check=False
         )
         (out / f"{name}.json").write_text(done.stdout, encoding="utf-8")
         print(f"{name}: exit code {done.returncode} {done.stderr[-300:] if done.returncode else ''}", flush=True)

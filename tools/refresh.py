@@ -22,13 +22,13 @@ from jupyter_client.kernelspec import KernelSpecManager
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 
-from course_lib.commands.saved_panels import drop_widgets
-from course_lib.commands.test import OFFLINE_STARTUP
 from course_lib.files import atomic_write, temporary_folder
-from course_lib.lessons.kit.exercises import Exercise, find_exercise
-from course_lib.lessons.kit.series_pictures import write_picture
-from course_lib.paths import REPOSITORY, STORE_SCENES, numbered_paths
+from courseware.commands.saved_panels import drop_widgets
+from courseware.commands.test import OFFLINE_STARTUP
+from courseware.lessons.kit.exercises import Exercise, find_exercise
+from courseware.paths import REPOSITORY, STORE_SCENES, numbered_paths
 from tools.pace import write_minutes
+from tools.series_pictures import write_picture
 
 MAX_BYTES = 700_000
 HANGS_S = 1800.0  # only what hangs takes so long
@@ -207,6 +207,6 @@ def merge_streams(outputs: list) -> list:
 
 
 if __name__ == "__main__":
-    from course_lib.cli import tool
+    from courseware.cli import tool
 
     sys.exit(tool("tools.refresh"))

@@ -8,8 +8,8 @@ import json
 import sys
 from pathlib import Path
 
-from course_lib.commands.arguments import add_detector_arguments, chosen_detector
 from course_lib.files import temporary_folder
+from courseware.commands.arguments import add_detector_arguments, chosen_detector
 from tools.make_data import FIRST_TEST_ROOM, IMAGES_PER_ROOM, N_TEST_ROOMS
 
 
@@ -29,12 +29,12 @@ def run(arguments: argparse.Namespace) -> int:
     """Score the detector; return the exit code."""
     from itertools import chain
 
-    from course_lib.commands.output import progress_bar
     from course_lib.files import require_file
-    from course_lib.paths import data_path
-    from course_lib.simulation.room.training_images import labelled_images, make_room_images, read_image_list
     from course_lib.spherical_stereo.recording import read_stereo_recording
+    from courseware.commands.output import progress_bar
+    from courseware.paths import data_path
     from tools.detector_evaluation import labelled_panoramas, score_detector
+    from tools.training_images import labelled_images, make_room_images, read_image_list
 
     if arguments.rooms < 1:
         raise ValueError(f"--rooms must be at least 1; got {arguments.rooms}")
@@ -70,6 +70,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 if __name__ == "__main__":
-    from course_lib.cli import tool
+    from courseware.cli import tool
 
     sys.exit(tool("tools.score_detector"))

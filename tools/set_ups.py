@@ -15,16 +15,16 @@ from PIL import Image
 
 from course_lib.depth_mcl import DepthCamera
 from course_lib.files import atomic_write
-from course_lib.paths import REPOSITORY, data_path
-from course_lib.plots import scenes
-from course_lib.plots.figures import BLUE
-from course_lib.simulation.corridor import materials, parts
-from course_lib.simulation.corridor.mesh_building import MeshBuilder, Placement, WorldMesh, to_polydata
-from course_lib.simulation.corridor.recorded_runs import WagonModel
-from course_lib.simulation.corridor.seeded_recording import building_of_data
-from course_lib.simulation.corridor.world import CLUTTER, LAYOUT, run_day
-from course_lib.simulation.room.experiment_room import make_experiment_room
-from course_lib.simulation.room.measurement_places import CAMERA_HEIGHTS, MEASUREMENT_PLACES
+from courseware.paths import REPOSITORY, data_path
+from courseware.plots import scenes
+from courseware.plots.figures import BLUE
+from courseware.simulation.corridor import materials, parts
+from courseware.simulation.corridor.mesh_building import MeshBuilder, Placement, WorldMesh, to_polydata
+from courseware.simulation.corridor.recorded_runs import WagonModel
+from courseware.simulation.corridor.seeded_recording import building_of_data
+from courseware.simulation.corridor.world import CLUTTER, LAYOUT, run_day
+from courseware.simulation.room.experiment_room import make_experiment_room
+from courseware.simulation.room.measurement_places import CAMERA_HEIGHTS, MEASUREMENT_PLACES
 
 FOLDER = REPOSITORY / "notebooks" / "pictures"
 SIZE = 1000, 560  # pixels
@@ -126,6 +126,6 @@ def run(arguments: Namespace) -> int:
 
 
 if __name__ == "__main__":
-    from course_lib.cli import tool
+    from courseware.cli import tool
 
     sys.exit(tool("tools.set_ups"))

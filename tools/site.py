@@ -30,8 +30,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Install the site's packages if they are missing, build the pages, and check every link."""
-    from course_lib.commands.arguments import require_output_folder
     from course_lib.files import staging_dir, temporary_folder
+    from courseware.commands.arguments import require_output_folder
     from tools.bench import install_beside
     from tools.site_pages import write_source
 
@@ -108,6 +108,6 @@ def start() -> int:
 if __name__ == "__main__":
     if not __package__:
         sys.exit(start())
-    from course_lib.cli import tool
+    from courseware.cli import tool
 
     sys.exit(tool("tools.site"))

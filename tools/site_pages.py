@@ -15,9 +15,9 @@ from pathlib import Path, PurePosixPath
 
 import nbformat
 
-from course_lib.classroom.assignment_cells import Assignment, read_assignments, tag_of
-from course_lib.classroom.student_copies import student_text, unsolved_notebook
-from course_lib.paths import REPOSITORY
+from courseware.classroom.assignment_cells import Assignment, read_assignments, tag_of
+from courseware.classroom.student_copies import student_text, unsolved_notebook
+from courseware.paths import REPOSITORY
 
 SETTINGS = Path(__file__).with_name("site_source")
 PAGES = "*.md notebooks/*.md notebooks/projects/*.md results-in-detail/*.md data/**/*.md tools/README.md"

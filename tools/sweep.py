@@ -10,7 +10,7 @@ import re
 import sys
 from pathlib import Path
 
-from course_lib.commands.arguments import MAX_PARTICLES, parse_seeds, require_count, require_output_folder
+from courseware.commands.arguments import MAX_PARTICLES, parse_seeds, require_count, require_output_folder
 
 CONNECT_S = 30
 MAX_SEEDS = 10_000  # by their number alone; who wants more, or meant one seed, says so: A-B
@@ -32,11 +32,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Runs what is missing, then tells what all seeds gave."""
-    from course_lib.commands.output import progress_bar
-    from course_lib.experiments.corridor import over_recordings, table_over_recordings
-    from course_lib.experiments.intervals import INTERVAL_PERCENT, median_interval
-    from course_lib.experiments.results import write_results
-    from course_lib.experiments.runner import kept_rows
+    from courseware.commands.output import progress_bar
+    from courseware.experiments.corridor import over_recordings, table_over_recordings
+    from courseware.experiments.intervals import INTERVAL_PERCENT, median_interval
+    from courseware.experiments.results import write_results
+    from courseware.experiments.runner import kept_rows
 
     seeds = seeds_of(arguments.seeds)
     require_count("--particles", arguments.particles, MAX_PARTICLES)
@@ -80,8 +80,8 @@ def dask(address: str) -> contextlib.AbstractContextManager:
 
 def corridor(seed: int, frames: int | None, n_particles: int) -> dict:
     """Table 1 of one seed, in any process: two recordings made, the paper's method and Fallon's run on each."""
-    from course_lib.experiments.corridor import METHODS_BY_HAND, table_1_of_seed
-    from course_lib.paths import data_path
+    from courseware.experiments.corridor import METHODS_BY_HAND, table_1_of_seed
+    from courseware.paths import data_path
 
     settings = {"recording": "own", "backend": "raster", "exact": False, "methods": METHODS_BY_HAND}
     data = str(data_path("corridor"))
@@ -90,6 +90,6 @@ def corridor(seed: int, frames: int | None, n_particles: int) -> dict:
 
 
 if __name__ == "__main__":
-    from course_lib.cli import tool
+    from courseware.cli import tool
 
     sys.exit(tool("tools.sweep"))

@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Train, write the weights, and measure the finished detector on the validation images; 0 when all was done."""
-    from course_lib.commands.arguments import require_output_folder, require_seed
+    from courseware.commands.arguments import require_output_folder, require_seed
 
     require_seed(arguments.seed)
     require_output_folder(arguments.out)
@@ -82,7 +82,7 @@ def report(plan, result, validation, initial_weights: Path | None) -> dict:
     """What training.json holds: the numbers, the seed, the versions, and of which weights the training began."""
     import torch
 
-    from course_lib.experiments.results import versions
+    from courseware.experiments.results import versions
 
     return {
         "version": 1,
@@ -115,6 +115,6 @@ def _bar(batches, count: int):
 
 
 if __name__ == "__main__":
-    from course_lib.cli import tool
+    from courseware.cli import tool
 
     sys.exit(tool("tools.train_detector"))

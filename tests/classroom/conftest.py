@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from course_lib.classroom.sandbox import SandboxError, copy_library, require_walls
+from courseware.classroom.sandbox import SandboxError, copy_library, require_walls
 
 
 @pytest.fixture(scope="session")

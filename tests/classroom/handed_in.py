@@ -5,10 +5,10 @@ from pathlib import Path
 
 import nbformat
 
-from course_lib.classroom.assignment_cells import Assignment, read_assignments, tag_of
-from course_lib.classroom.model_answers import model_answers
-from course_lib.lessons.kit.exercises import find_exercise
-from course_lib.lessons.kit.mistakes import ARROW, WHOLE_BODY, edited_text
+from courseware.classroom.assignment_cells import Assignment, read_assignments, tag_of
+from courseware.classroom.model_answers import model_answers
+from courseware.lessons.kit.exercises import find_exercise
+from courseware.lessons.kit.mistakes import ARROW, WHOLE_BODY, edited_text
 
 
 def assignment_of(name: str) -> Assignment:

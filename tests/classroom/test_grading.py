@@ -9,15 +9,15 @@ from pathlib import Path
 
 import pytest
 
-from course_lib.classroom import grading
-from course_lib.classroom.grading import grade_folder
-from course_lib.classroom.handout import canary_of
-from course_lib.classroom.judge import Graded, Judged
-from course_lib.classroom.pages import feedback_name, write_results
-from course_lib.classroom.results import Entry, table_text, what_counts
-from course_lib.classroom.sandbox import Limits, SandboxError
-from course_lib.classroom.submissions import Submission, read_roster
-from course_lib.cli import main
+from courseware.classroom import grading
+from courseware.classroom.grading import grade_folder
+from courseware.classroom.handout import canary_of
+from courseware.classroom.judge import Graded, Judged
+from courseware.classroom.pages import feedback_name, write_results
+from courseware.classroom.results import Entry, table_text, what_counts
+from courseware.classroom.sandbox import Limits, SandboxError
+from courseware.classroom.submissions import Submission, read_roster
+from courseware.cli import main
 from tests.classroom.handed_in import handed_in, mistaken, solved
 from tests.notebooks.driven_lab import require_chromium, serious_findings
 

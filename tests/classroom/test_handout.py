@@ -8,11 +8,11 @@ import zipfile
 
 import pytest
 
-from course_lib.classroom import handout
-from course_lib.classroom.assignment_cells import read_assignments
-from course_lib.classroom.handout import MARKER, HandoutError, canary_of, make_handout
-from course_lib.classroom.leaks import LeakError, find_leaks, teachers_words
-from course_lib.lessons.kit.exercises import find_exercise
+from courseware.classroom import handout
+from courseware.classroom.assignment_cells import read_assignments
+from courseware.classroom.handout import MARKER, HandoutError, canary_of, make_handout
+from courseware.classroom.leaks import LeakError, find_leaks, teachers_words
+from courseware.lessons.kit.exercises import find_exercise
 
 SEED = 31_415_926_535
 TWO = read_assignments(["06", "P2"])
@@ -83,11 +83,11 @@ def test_the_package_for_students_works_and_holds_nothing_of_the_teachers(made, 
         archive.extractall(tmp_path)
     course = tmp_path / "course"
     names = {str(path.relative_to(course)) for path in course.rglob("*")}
-    there = {"course.py", "course_lib/lessons/lesson_06/exercises.py", "notebooks/06_likelihood_and_weights.ipynb"}
+    there = {"course.py", "courseware/answers/lesson_06.py", "notebooks/06_likelihood_and_weights.ipynb"}
     assert there <= names
-    gone = {"tests", "tools", ".git", ".ci", "course_lib/classroom", "notebooks/projects/solutions", "TEACHING.md"}
+    gone = {"tests", "tools", ".git", ".ci", "courseware/classroom", "notebooks/projects/solutions", "TEACHING.md"}
     assert not gone & names
-    ran = [subprocess.run([sys.executable, "-m", "course_lib", word], cwd=course, capture_output=True, check=False)
+    ran = [subprocess.run([sys.executable, "-m", "courseware", word], cwd=course, capture_output=True, check=False)
            for word in ("--help", "grade")]  # fmt: skip
     assert [one.returncode for one in ran] == [0, 1]
 

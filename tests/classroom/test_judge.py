@@ -3,10 +3,10 @@
 import nbformat
 import pytest
 
-from course_lib.classroom.assignment_cells import function_names
-from course_lib.classroom.judge import Settings, judge, lessons_of
-from course_lib.classroom.points import earned
-from course_lib.lessons.kit.exercises import find_exercise
+from courseware.classroom.assignment_cells import function_names
+from courseware.classroom.judge import Settings, judge, lessons_of
+from courseware.classroom.points import earned
+from courseware.lessons.kit.exercises import find_exercise
 from tests.classroom.handed_in import assignment_of, handed_in, mistaken, solved
 
 FUNCTIONS = function_names()

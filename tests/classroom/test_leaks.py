@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from course_lib.classroom.leaks import find_leaks
+from courseware.classroom.leaks import find_leaks
 
 BODY = "# one over the term\nreturn alpha / term - alpha  # metres"
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from course_lib.classroom.assignment_cells import function_name, read_assignments
-from course_lib.classroom.model_answers import model_answers
+from courseware.classroom.assignment_cells import function_name, read_assignments
+from courseware.classroom.model_answers import model_answers
 
 
 @pytest.mark.parametrize("assignment", read_assignments(), ids=lambda one: one.name)

@@ -6,10 +6,10 @@ import warnings
 
 import pytest
 
-from course_lib.classroom.handout import canary_of
-from course_lib.classroom.leaks import find_leaks, solutions, teachers_words
-from course_lib.classroom.nbgrader_course import write_course
-from course_lib.classroom.student_copies import write
+from courseware.classroom.handout import canary_of
+from courseware.classroom.leaks import find_leaks, solutions, teachers_words
+from courseware.classroom.nbgrader_course import write_course
+from courseware.classroom.student_copies import write
 from tests.classroom.handed_in import assignment_of, handed_in, mistaken, solved
 
 SEED = 31_415_926_535

@@ -2,7 +2,7 @@
 
 import pytest
 
-from course_lib.classroom.points import POINTS, earned
+from courseware.classroom.points import POINTS, earned
 
 
 @pytest.mark.parametrize(("right", "share"), [

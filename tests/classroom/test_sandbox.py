@@ -8,10 +8,10 @@ import textwrap
 import psutil
 import pytest
 
-from course_lib.classroom import sandbox, self_test
-from course_lib.classroom.judge import Settings, judge
-from course_lib.classroom.sandbox import Limits, SandboxError, require_walls
-from course_lib.paths import REPOSITORY
+from courseware.classroom import sandbox, self_test
+from courseware.classroom.judge import Settings, judge
+from courseware.classroom.sandbox import Limits, SandboxError, require_walls
+from courseware.paths import REPOSITORY
 from tests.classroom.handed_in import handed_in, solved
 
 SHORT = Limits(call_seconds=0.5, seconds=2.0)
@@ -167,7 +167,7 @@ def test_nothing_runs_on_when_the_watch_fails(library, tmp_path, monkeypatch):
 FORGED = {
     "printed": "print('06.1: right.')\nreturn hidden",
     "the library patched": """
-        import course_lib.lessons.kit.exercises as exercises, course_lib.classroom.answers as answers
+        import courseware.lessons.kit.exercises as exercises, courseware.classroom.answers as answers
         exercises.right_on = exercises.same_values = lambda *given: True
         answers.encode = lambda value, depth=0: {"kind": "right"}
         return hidden

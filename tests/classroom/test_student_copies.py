@@ -6,9 +6,9 @@ from pathlib import PurePosixPath
 import nbformat
 import pytest
 
-from course_lib.classroom.assignment_cells import AssignmentError, read_assignments, tag_of
-from course_lib.classroom.leaks import find_leaks, solutions
-from course_lib.classroom.student_copies import (
+from courseware.classroom.assignment_cells import AssignmentError, read_assignments, tag_of
+from courseware.classroom.leaks import find_leaks, solutions
+from courseware.classroom.student_copies import (
     solved_notebook,
     student_notebook,
     student_text,
@@ -16,8 +16,8 @@ from course_lib.classroom.student_copies import (
     within,
     write_copies,
 )
-from course_lib.commands.working_copies import clear_answers
-from course_lib.lessons.kit.exercises import check
+from courseware.commands.working_copies import clear_answers
+from courseware.lessons.kit.exercises import check
 
 ASSIGNMENTS = read_assignments()
 NAMES = [assignment.name for assignment in ASSIGNMENTS]

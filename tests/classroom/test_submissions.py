@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from course_lib.classroom.submissions import Roster, SubmissionError, collect, read_roster, whose
+from courseware.classroom.submissions import Roster, SubmissionError, collect, read_roster, whose
 
 LESSONS = {"06": "06_likelihood_and_weights", "20": "20_your_own_data", "P1": "P1_the_whole_filter"}
 

@@ -7,13 +7,13 @@ import sys
 import numpy as np
 import pytest
 
-from course_lib.classroom import worlds
-from course_lib.classroom.judge import Settings, judge
-from course_lib.classroom.points import SCORE_POINTS
-from course_lib.classroom.worlds import LINES, graded_project, moved, paper_value, score_points, score_sentence
-from course_lib.lessons.kit.exercises import lesson_exercises, lesson_numbers
-from course_lib.lessons.kit.projects import find_project, outcomes, project_names
-from course_lib.lessons.project_2.project import pose_cost
+from courseware.answers.project_2_task import pose_cost
+from courseware.classroom import worlds
+from courseware.classroom.judge import Settings, judge
+from courseware.classroom.points import SCORE_POINTS
+from courseware.classroom.worlds import LINES, graded_project, moved, paper_value, score_points, score_sentence
+from courseware.lessons.kit.exercises import lesson_exercises, lesson_numbers
+from courseware.lessons.kit.projects import find_project, outcomes, project_names
 
 
 def test_every_project_has_a_line_between_the_papers_method_and_ours():

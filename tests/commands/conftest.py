@@ -5,8 +5,8 @@ import json
 
 import pytest
 
-from course_lib.cli import main
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
+from courseware.cli import main
 
 
 @pytest.fixture

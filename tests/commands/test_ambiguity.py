@@ -2,7 +2,7 @@
 
 import pytest
 
-from course_lib.cli import main
+from courseware.cli import main
 from tests.beyond.look_alikes.look_alike_scene import SYMMETRIC
 
 

@@ -6,16 +6,16 @@ import cv2
 import numpy as np
 import pytest
 
-from course_lib.cli import main
-from course_lib.commands.arguments import add_detector_arguments, chosen_detector, parse_seeds
-from course_lib.paths import data_path
-from course_lib.simulation.room import data as room_data
 from course_lib.spherical_stereo.detection.detector import YoloDetector
+from courseware.cli import main
+from courseware.commands.arguments import add_detector_arguments, chosen_detector, parse_seeds
+from courseware.paths import data_path
+from courseware.simulation.room import data as room_data
 
 PAIR = "--baseline 0.3 --upper {pair}_upper.jpg --lower {pair}_lower.jpg"
 # Module of the command -> the words that every call has, and calls with what is said of them.
 WRONG = {
-    "course_lib.commands.ambiguity": (
+    "courseware.commands.ambiguity": (
         "ambiguity --map {data}/room/semantic_map.json --out {out}",
         ("--association best", "association must be one of greedy, hungarian, consistent"),
         ("--step 0", "--step must be a positive number of metres"),
@@ -23,13 +23,13 @@ WRONG = {
         ("--draws 0", "--draws must be at least 1; got 0"),
         ("--seed -1", "--seed must be 0 or more; got -1"),
     ),
-    "course_lib.commands.compare": (
+    "courseware.commands.compare": (
         "compare --map {data}/corridor/map.ply --sequence {data}/corridor/hand --out {out}",
         ("--every 0", "--every must be whole numbers, at least 1"),
         ("--every 900", "no frame is left"),
         ("--seeds 5-1", "--seeds must be"),
     ),
-    "course_lib.commands.localize": (
+    "courseware.commands.localize": (
         "localize --map {data}/corridor/map.ply --sequence {data}/corridor/wagon --dof xyyaw --frames 2 --out {out}",
         ("--start 1 2 nan 0 0 0", "six finite numbers"),
         ("--start 1 2 3", "six finite numbers"),
@@ -48,7 +48,7 @@ WRONG = {
         ("--dof 6 --method paper --recover", "--recover goes with the annealed filter"),
         ("--out {here}", "is a file: give a folder"),
     ),
-    "course_lib.commands.locate": (
+    "courseware.commands.locate": (
         f"locate --map {{data}}/room/semantic_map.json {PAIR} --out {{out}}",
         ("--upper none.png", "none.png is missing"),
         ("--baseline 300", "Is it in millimetres"),
@@ -58,7 +58,7 @@ WRONG = {
         ("--association best", "association must be one of greedy"),
         ("--out {here}", "is a file: give a folder"),
     ),
-    "course_lib.commands.stereo": (
+    "courseware.commands.stereo": (
         f"stereo {PAIR} --out {{out}}",
         ("--baseline=-0.3", "--baseline must be a positive number"),
         ("--sigma-pixels 0", "--sigma-pixels must be a positive number of pixels; got 0"),
@@ -66,7 +66,7 @@ WRONG = {
         ("--upper {pair}_lower.jpg --lower {pair}_upper.jpg", "swapped"),
         ("--lower half.png", "one size"),
     ),
-    "course_lib.commands.demo": (
+    "courseware.commands.demo": (
         "demo",
         ("corridor --seeds 5-1 --out {out}", "--seeds must be"),
         ("corridor --frames 0 --out {out}", "--frames must be at least 1"),
@@ -86,7 +86,7 @@ WRONG = {
         ("trouble --method depth --frames 20 --out {out}", "take a longer recording or a smaller share"),
         ("finale --places 0 --out {out}", "--places must be at least 1"),
     ),
-    "course_lib.commands.handout": (
+    "courseware.commands.handout": (
         "handout",
         ("99", "no lesson 99"),
         ("06 --seed -1", "--seed must be 0 or more"),

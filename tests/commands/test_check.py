@@ -6,7 +6,7 @@ import importlib.metadata
 import numpy as np
 import pytest
 
-from course_lib.commands import check
+from courseware.commands import check
 
 
 def test_each_broken_import_is_named_and_the_others_are_still_tried(tmp_path, monkeypatch):

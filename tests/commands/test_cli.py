@@ -7,7 +7,7 @@ from unittest.mock import Mock
 
 import pytest
 
-from course_lib import cli
+from courseware import cli
 
 
 @pytest.fixture
@@ -17,16 +17,16 @@ def command(monkeypatch):
     def put(run, add_arguments=lambda parser: None, **attributes):
         module = types.SimpleNamespace(run=run, add_arguments=add_arguments, __doc__="Try it.", **attributes)
         monkeypatch.setitem(cli.COMMANDS, "try it", ("try_it", "a try"))
-        monkeypatch.setitem(sys.modules, "course_lib.commands.try_it", module)
+        monkeypatch.setitem(sys.modules, "courseware.commands.try_it", module)
         monkeypatch.delenv("COURSE_DEBUG", raising=False)
 
     return put
 
 
 def test_help_lists_every_command_imports_none_and_each_declares_its_arguments(capsys):
-    script = "import sys; from course_lib import cli; cli.main(['--help']); print(sorted(sys.modules))"
+    script = "import sys; from courseware import cli; cli.main(['--help']); print(sorted(sys.modules))"
     printed = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout
-    assert not any(f"'{name}" in printed for name in ("numpy", "vtk", "course_lib.commands"))
+    assert not any(f"'{name}" in printed for name in ("numpy", "vtk", "courseware.commands"))
     for name, (_, text) in cli.COMMANDS.items():
         assert name in printed
         assert text in printed
@@ -68,7 +68,7 @@ def test_an_error_is_one_line_and_a_code(command, capsys, error, code):
 
 
 def test_a_reader_that_leaves_early_causes_no_complaint():
-    script = "from course_lib import cli; import sys; sys.exit(cli.main(['check']))"
+    script = "from courseware import cli; import sys; sys.exit(cli.main(['check']))"
     process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     process.stdout.close()
     with process:

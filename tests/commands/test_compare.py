@@ -5,8 +5,8 @@ from subprocess import CompletedProcess
 
 import pytest
 
-from course_lib.cli import main
-from course_lib.commands import compare
+from courseware.cli import main
+from courseware.commands import compare
 
 
 @pytest.fixture

@@ -8,11 +8,11 @@ import sys
 import numpy as np
 import pytest
 
-from course_lib.cli import main
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.depth_mcl.sequence_files import read_tum
-from course_lib.experiments import corridor, walk
-from course_lib.simulation.corridor.seeded_recording import HARDSHIPS
+from courseware.cli import main
+from courseware.experiments import corridor, walk
+from courseware.simulation.corridor.seeded_recording import HARDSHIPS
 from tests.commands.conftest import rows_of
 
 THREE_FRAMES = ["--seed", "6", "--frames", "3", "--particles", "15"]
@@ -37,7 +37,7 @@ def test_the_corridor_has_table_1_figures_and_a_scene_and_another_process_withou
     assert len(read_tum(tmp_path / "trajectory.txt")[1]) == 3
     assert set(json.loads((tmp_path / "run.json").read_text())["files"]) >= {"corridor.json", "figure_5.png"}
     words = ["demo", "corridor", *THREE_FRAMES, "--out", str(tmp_path / "again")]
-    code = f"from course_lib.cli import main; raise SystemExit(main({words!r}))"
+    code = f"from courseware.cli import main; raise SystemExit(main({words!r}))"
     hidden = os.environ | {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "DISPLAY": ""}
     subprocess.run([sys.executable, "-c", code], env=hidden, stdout=subprocess.DEVNULL, check=True)
     for name in ("corridor.csv", "trajectory.txt", "overview.png", "corridor.html"):
@@ -99,7 +99,7 @@ def test_without_out_a_run_has_a_folder_of_its_own_beside_the_kept_rows(monkeypa
         return [{"method": method, "every": 1, "run": run} for method in methods]
 
     monkeypatch.setattr(walk, "room_walk", walked)
-    for module in ("course_lib.files", "course_lib.commands.demo"):
+    for module in ("courseware.run_folder", "courseware.commands.demo"):
         monkeypatch.setattr(f"{module}.REPOSITORY", tmp_path)
     assert main(["demo", "walk", "--methods", "floor"]) == 0
     kept = tmp_path / "results" / "demo_walk"

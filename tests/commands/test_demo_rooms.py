@@ -7,11 +7,11 @@ import re
 
 import pytest
 
-from course_lib.cli import main
-from course_lib.experiments import rooms, trouble
-from course_lib.experiments.depth_trouble import LENGTHS
-from course_lib.experiments.rooms import METHODS
-from course_lib.paths import data_path
+from courseware.cli import main
+from courseware.experiments import rooms, trouble
+from courseware.experiments.depth_trouble import LENGTHS
+from courseware.experiments.rooms import METHODS
+from courseware.paths import data_path
 from tests.commands.conftest import rows_of
 from tests.experiments.test_rooms import entry, record
 

@@ -2,8 +2,8 @@
 
 import json
 
-from course_lib.cli import main
-from course_lib.commands import handout
+from courseware.cli import main
+from courseware.commands import handout
 
 
 def test_it_makes_the_folder_and_says_which_part_is_whose_and_draws_a_seed(tmp_path, capsys, monkeypatch):

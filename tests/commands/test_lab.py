@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from course_lib.cli import main
-from course_lib.commands import lab
-from course_lib.commands.saved_panels import WIDGET_VIEW
-from course_lib.paths import REPOSITORY
+from courseware.cli import main
+from courseware.commands import lab
+from courseware.commands.saved_panels import WIDGET_VIEW
+from courseware.paths import REPOSITORY
 from tests.notebooks.driven_lab import TOKEN, free_port, wait_for_server
 
 

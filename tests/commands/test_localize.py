@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 import trimesh
 
-from course_lib.cli import main
-from course_lib.commands.localize_report import believed
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
 from course_lib.depth_mcl.sequence_files import read_tum
 from course_lib.geometry import optical_pose, rotation_to_z_up, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
+from courseware.cli import main
+from courseware.commands.localize_report import believed
 from tests.beyond.six_dof.test_calibration import STATES
 from tests.commands.conftest import rows_of
 from tests.rendering.shapes import SMALL, furnished_room

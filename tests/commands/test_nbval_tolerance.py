@@ -2,7 +2,7 @@
 
 import pytest
 
-from course_lib.commands.nbval_tolerance import Tolerance, adopted, declared_tolerance, within_tolerance
+from courseware.commands.nbval_tolerance import Tolerance, adopted, declared_tolerance, within_tolerance
 
 TEN_PERCENT = Tolerance(0.1, 0.0)
 

@@ -4,7 +4,7 @@ import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
-from course_lib.commands.saved_panels import SENTENCE, WIDGET_VIEW, keep_pictures
+from courseware.commands.saved_panels import SENTENCE, WIDGET_VIEW, keep_pictures
 
 VIEW = {WIDGET_VIEW: {"model_id": "0123", "version_major": 2, "version_minor": 0}}
 

@@ -4,8 +4,8 @@ import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from course_lib.cli import main
-from course_lib.lessons.kit import score as scoring
+from courseware.cli import main
+from courseware.lessons.kit import score as scoring
 
 
 @pytest.fixture
@@ -49,4 +49,4 @@ def test_the_command_runs_it_in_a_process_of_its_own(monkeypatch):
     ran = []
     monkeypatch.setattr("subprocess.call", lambda words: ran.append(words) or 7)
     assert main(["score", "P1", "a.py", "--seeds", "10001"]) == 7
-    assert ran[0][1:] == ["-P", "-m", "course_lib.lessons.kit.score", "P1", "a.py", "--seeds", "10001"]
+    assert ran[0][1:] == ["-P", "-m", "courseware.lessons.kit.score", "P1", "a.py", "--seeds", "10001"]

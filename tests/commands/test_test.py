@@ -7,8 +7,8 @@ from subprocess import CompletedProcess
 import nbformat
 import pytest
 
-from course_lib.cli import main, parse
-from course_lib.commands import test as command
+from courseware.cli import main, parse
+from courseware.commands import test as command
 
 
 def words_for(*words, n_workers=1):

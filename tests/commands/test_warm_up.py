@@ -8,9 +8,9 @@ import pytest
 from course_lib.beyond import AnnealedLocalizer, GlobalSearch, warm_up
 from course_lib.beyond.lost_and_found import stored_views
 from course_lib.beyond.six_dof import image_motion, refinement
-from course_lib.commands.warm_up import simplify_corridor
 from course_lib.depth_mcl import DepthCamera, DepthRenderer, MonteCarloLocalizer, SceneMap
 from course_lib.rendering import raster, simplification
+from courseware.commands.warm_up import simplify_corridor
 
 LIKELIHOOD = importlib.import_module("course_lib.depth_mcl.likelihood")  # the package's name for it is the function
 LOOPS = ((raster, "draw_views"), (LIKELIHOOD, "_sums"), (refinement, "_sums"), (image_motion, "_sums"))

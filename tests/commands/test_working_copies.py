@@ -8,8 +8,8 @@ import subprocess
 import nbformat
 import pytest
 
-from course_lib.commands.working_copies import copy_of, lessons, make_copies
-from course_lib.paths import REPOSITORY
+from courseware.commands.working_copies import copy_of, lessons, make_copies
+from courseware.paths import REPOSITORY
 
 DAY = datetime.date(2026, 11, 23)
 LESSON_06 = "06_likelihood_and_weights.ipynb"

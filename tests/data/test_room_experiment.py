@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.experiments.room import experiment_summary, localize_pair, range_errors, run_experiment
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from courseware.experiments.room import experiment_summary, localize_pair, range_errors, run_experiment
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "room"
 SHIPPED_SEED = 4

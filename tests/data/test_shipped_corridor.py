@@ -13,8 +13,8 @@ from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import rotation_angle
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor.world import CLUTTER, make_corridor
-from course_lib.simulation.sensors.ray_casting import WorldCaster
+from courseware.simulation.corridor.world import CLUTTER, make_corridor
+from courseware.simulation.sensors.ray_casting import WorldCaster
 from tools.corridor_data import CorridorModels
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "corridor"

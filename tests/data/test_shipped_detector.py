@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.experiments.room import localize_pair, turn_summary, turn_the_rig, weigh_by_covariance
 from course_lib.spherical_stereo.detection.detected_object import box_iou
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from courseware.experiments.room import localize_pair, turn_summary, turn_the_rig, weigh_by_covariance
 from tools.detector_evaluation import labelled_panoramas, score_detector
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "detector"

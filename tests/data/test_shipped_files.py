@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from course_lib.lessons.project_2.rooms import SEEDS
-from course_lib.simulation.data_folder import checksums, parameter_tables
-from course_lib.simulation.room import data as room
-from course_lib.simulation.room import finale_data as finale
+from courseware.lessons.project_2.rooms import SEEDS
+from courseware.simulation.data_folder import checksums, parameter_tables
+from courseware.simulation.room import data as room
+from courseware.simulation.room import finale_data as finale
 from tools import corridor_data as corridor
 
 DATA = Path(__file__).resolve().parents[2] / "data"

@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.experiments.room_evaluation import NO_OBJECT
-from course_lib.lessons.project_2.rooms import POSES, SEEDS, project_rooms
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.room.depth_world import depth_caster
-from course_lib.simulation.room.finale_data import SEED
-from course_lib.simulation.room.furnishing import make_look_alike_room
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+from courseware.experiments.room_evaluation import NO_OBJECT
+from courseware.lessons.project_2.rooms import POSES, SEEDS, project_rooms
+from courseware.simulation.room.depth_world import depth_caster
+from courseware.simulation.room.finale_data import SEED
+from courseware.simulation.room.furnishing import make_look_alike_room
 
 DATA = Path(__file__).resolve().parents[2] / "data"
 

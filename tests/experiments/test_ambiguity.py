@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from course_lib.beyond.look_alikes.hypotheses import rotations
-from course_lib.experiments.ambiguity import ambiguity_map, imagined_observations
+from courseware.experiments.ambiguity import ambiguity_map, imagined_observations
 from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, SYMMETRIC
 
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from course_lib.experiments import bearing_only
-from course_lib.experiments.bearing_only import ALONE, FITS, PAPER, bearing_table, compared, fit_bearings
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.semantic_map.association import Observation
+from courseware.experiments import bearing_only
+from courseware.experiments.bearing_only import ALONE, FITS, PAPER, bearing_table, compared, fit_bearings
 
 TRUE = np.array([2.0, 1.5, 2.8])
 ROOM = np.array([[0.3, 0.4], [5.0, 0.5], [4.2, 4.6], [0.5, 3.9], [2.6, 5.2], [5.4, 2.5]])

@@ -7,9 +7,9 @@ import pytest
 
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.corridor import BY_HAND, METHODS, Maps, own_recordings, run_row, run_rows
-from course_lib.experiments.recordings import SIGMA
+from course_lib.recordings import SIGMA
 from course_lib.rendering.scene_map import SceneMap
+from courseware.experiments.corridor import BY_HAND, METHODS, Maps, own_recordings, run_row, run_rows
 
 
 @pytest.fixture(scope="module")

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from course_lib.beyond.guarded_depth import OUTCOMES
-from course_lib.experiments.depth_trouble import GATE, LENGTHS, MAX_RANGE, SPOILS, corridor_trouble, underexposed
-from course_lib.experiments.troubled_frames import summary, troubled_frames, troubled_recording
+from courseware.experiments.depth_trouble import GATE, LENGTHS, MAX_RANGE, SPOILS, corridor_trouble, underexposed
+from courseware.experiments.troubled_frames import summary, troubled_frames, troubled_recording
 
 N, PERIOD = 80, 0.1
 TIMES = PERIOD * np.arange(N)

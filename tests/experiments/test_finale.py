@@ -6,7 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from course_lib.experiments.finale import (
+from course_lib.rendering.renderer import DepthRenderer
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from courseware.experiments.finale import (
     FRAMES,
     VIEW_TURN,
     VIEWS,
@@ -17,8 +19,6 @@ from course_lib.experiments.finale import (
     robot_states,
     summarize,
 )
-from course_lib.rendering.renderer import DepthRenderer
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from tests.rendering.shapes import SMALL, furnished_room
 
 TRUE = np.array([-1.2, 0.5, -0.3])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from course_lib.experiments.intervals import bootstrap_percent, median_interval, wilson_percent
+from courseware.experiments.intervals import bootstrap_percent, median_interval, wilson_percent
 
 
 @pytest.mark.parametrize(("hits", "n"), [(13, 20), (0, 20), (20, 20), (200, 400)])

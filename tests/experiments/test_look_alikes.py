@@ -8,7 +8,7 @@ import pytest
 from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
-from course_lib.experiments.look_alikes import (
+from courseware.experiments.look_alikes import (
     Answer,
     answers_of_rooms,
     answers_of_sequences,
@@ -17,7 +17,7 @@ from course_lib.experiments.look_alikes import (
     measured_motion,
     risk_coverage,
 )
-from course_lib.experiments.observed_rooms import record_of_observations
+from courseware.experiments.observed_rooms import record_of_observations
 from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, SYMMETRIC, observed, scattered
 
 STEPS = (POSE, POSE + [0.3, -0.1, 0.2], POSE + [0.5, 0.2, 0.3])  # noqa: RUF005 (they are arrays)

@@ -1,6 +1,6 @@
 """`demo lost`: what its trials gave is told, whatever they gave."""
 
-from course_lib.experiments.lost import lost_table, summarize
+from courseware.experiments.lost import lost_table, summarize
 
 
 def a_trial(frames_to_recover):

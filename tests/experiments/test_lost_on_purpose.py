@@ -8,7 +8,7 @@ import pytest
 
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
-from course_lib.experiments.recordings import SIGMA, run_sequence, system_noise
+from course_lib.recordings import SIGMA, run_sequence, system_noise
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.rendering.sensor import subsample_depth
 

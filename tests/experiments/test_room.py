@@ -5,13 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from course_lib.experiments.room import RolledPair, compare, experiment_summary, turn_summary, weighted_summary
-from course_lib.experiments.room_evaluation import outcome
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.pose.localization import UNABLE, Localization
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
+from courseware.experiments.room import RolledPair, compare, experiment_summary, turn_summary, weighted_summary
+from courseware.experiments.room_evaluation import outcome
 
 WIDTH, COLUMNS = 1280, 97
 ANGLE = 2 * np.pi * COLUMNS / WIDTH

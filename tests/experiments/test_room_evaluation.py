@@ -6,7 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from course_lib.experiments.room_evaluation import (
+from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.pose.localization import Localization, PlacedObject
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.recording import TrueObject
+from course_lib.spherical_stereo.semantic_map.association import Observation
+from courseware.experiments.room_evaluation import (
     NO_OBJECT,
     PAPER_TABLE_3,
     PAPER_TABLE_4,
@@ -18,11 +23,6 @@ from course_lib.experiments.room_evaluation import (
     true_landmarks_of,
     wrong_pairs,
 )
-from course_lib.spherical_stereo.detection.detected_object import Detection
-from course_lib.spherical_stereo.pose.localization import Localization, PlacedObject
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from course_lib.spherical_stereo.recording import TrueObject
-from course_lib.spherical_stereo.semantic_map.association import Observation
 
 WIDTH = 1280
 TRUE_POSE = (1.0, 2.0, 3.1)

@@ -8,16 +8,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from course_lib.experiments import observed_rooms
-from course_lib.experiments.observed_rooms import judged_poses, observe_room, stored_map, stored_observations
-from course_lib.experiments.room import localize_pair
-from course_lib.experiments.room_evaluation import NO_OBJECT
-from course_lib.experiments.rooms import METHODS, rooms_summary
 from course_lib.geometry import wrap_angle
-from course_lib.paths import data_path
-from course_lib.simulation.room.look_alike_recording import RecordingModels
-from course_lib.simulation.room.survey import RoomSurveyModel
-from course_lib.simulation.sensors.panorama_rig import RigModel
+from courseware.experiments import observed_rooms
+from courseware.experiments.observed_rooms import judged_poses, observe_room, stored_map, stored_observations
+from courseware.experiments.room import localize_pair
+from courseware.experiments.room_evaluation import NO_OBJECT
+from courseware.experiments.rooms import METHODS, rooms_summary
+from courseware.paths import data_path
+from courseware.simulation.room.look_alike_recording import RecordingModels
+from courseware.simulation.room.survey import RoomSurveyModel
+from courseware.simulation.sensors.panorama_rig import RigModel
 
 MAP = [["sofa", 0.0, 0.0, 20.0, 60.0], ["sofa", 4.0, 0.0, 21.0, 60.0], ["table", 1.0, 3.0, None, 5.0]]
 NOISE = [[0.01, 0.0], [0.0, 0.01]]

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.experiments.results import versions, write_results
-from course_lib.experiments.runner import kept_rows
+from courseware.experiments.results import versions, write_results
+from courseware.experiments.runner import kept_rows
 
 ROOT = Path(__file__).parents[2]
 POINTS = [{"seed": seed, "scale": scale} for seed in range(1, 4) for scale in (1.0, 10.0)]

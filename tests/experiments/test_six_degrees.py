@@ -6,8 +6,8 @@ import pytest
 from course_lib.beyond.six_dof.poses import retract
 from course_lib.beyond.six_dof.prediction import START_SPREAD
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.six_degrees import ABLATIONS, StandingStill, pooled, run_frames
 from course_lib.rendering.scene_map import SceneMap
+from courseware.experiments.six_degrees import ABLATIONS, StandingStill, pooled, run_frames
 
 
 @pytest.fixture(scope="module")

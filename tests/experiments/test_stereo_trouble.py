@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from course_lib.beyond.look_alikes.consistent import associate_consistent
-from course_lib.experiments.stereo_trouble import GATE, LENGTHS, PERIOD, SPOILS, STOPS, walk_trouble
-from course_lib.experiments.troubled_frames import summary, troubled_frames, troubled_recording
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
+from courseware.experiments.stereo_trouble import GATE, LENGTHS, PERIOD, SPOILS, STOPS, walk_trouble
+from courseware.experiments.troubled_frames import summary, troubled_frames, troubled_recording
 from tests.spherical_stereo.stereo_scene import BASELINE, TRUE_POSE, KnowingDetector, mapped_scene, pair_from
 
 SEED = 10_008  # for tuning: the tests' own

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from course_lib.experiments.troubled_frames import (
+from courseware.experiments.troubled_frames import (
     LEFT_AT_THE_END,
     Gate,
     confident_wrong,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
-from course_lib.experiments import walk
+from courseware.experiments import walk
 
 
 @pytest.mark.slow

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.exercises import fault, find_exercise, judge, lesson_exercises, lesson_numbers
-from course_lib.lessons.kit.values import parts
+from courseware.lessons.kit.exercises import fault, find_exercise, judge, lesson_exercises, lesson_numbers
+from courseware.lessons.kit.values import parts
 
 EXERCISES = [exercise for number in lesson_numbers() for exercise in lesson_exercises(number)]
 every_exercise = pytest.mark.parametrize("exercise", EXERCISES, ids=lambda exercise: exercise.number)

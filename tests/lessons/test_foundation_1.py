@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons import foundation_1
-from course_lib.lessons.foundation_1 import corridor
-from course_lib.lessons.foundation_1.exercises import correct, share_left
+from courseware.answers.foundation_1 import correct, share_left
+from courseware.lessons import foundation_1
+from courseware.lessons.foundation_1 import corridor
 
 
 def test_beliefs_sum_to_one_and_stay_on_the_grid():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from course_lib.geometry import pose_matrix, rotation_log
-from course_lib.lessons.foundation_2.clouds import cloud_about, mean_errors
+from courseware.lessons.foundation_2.clouds import cloud_about, mean_errors
 
 
 def test_a_cloud_has_its_spread_about_each_axis_of_the_body_at_any_pitch():

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.foundation_3 import JOINS, band, covariance_intersection, join, kalman_update, sees, wagon
-from course_lib.lessons.foundation_3.exercises import fuse_correlated
-from course_lib.lessons.foundation_3.fusion import normalized_errors
+from courseware.answers.foundation_3 import fuse_correlated
+from courseware.lessons.foundation_3 import JOINS, band, covariance_intersection, join, kalman_update, sees, wagon
+from courseware.lessons.foundation_3.fusion import normalized_errors
 
 
 @pytest.mark.parametrize("how", JOINS)

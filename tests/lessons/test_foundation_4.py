@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from course_lib.geometry import rotation_exp
-from course_lib.lessons.foundation_4 import two_views
-from course_lib.lessons.foundation_4.figures import circle_about, on_panorama
-from course_lib.lessons.foundation_4.pose_from_sight import informations, pose_errors
+from courseware.lessons.foundation_4 import two_views
+from courseware.lessons.foundation_4.figures import circle_about, on_panorama
+from courseware.lessons.foundation_4.pose_from_sight import informations, pose_errors
 
 R, C = rotation_exp(two_views.TURN), two_views.PLACE
 E = R.T @ np.cross(np.eye(3), C)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.lesson_00 import mean_votes, moment, pose_panel
-from course_lib.lessons.lesson_00.exercises import off_the_top
-from course_lib.lessons.lesson_00.search import BUDGET, Score
+from courseware.answers.lesson_00 import off_the_top
+from courseware.lessons.lesson_00 import mean_votes, moment, pose_panel
+from courseware.lessons.lesson_00.search import BUDGET, Score
 
 
 def test_the_panels_button_finds_the_truth_and_no_surface_loses_a_vote_without_a_step_back():

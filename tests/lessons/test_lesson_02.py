@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.lesson_02.exercises import lateral_sigma, off_the_sigma
-from course_lib.lessons.lesson_02.small_room import STATIONS, quality, room, scans
+from courseware.answers.lesson_02 import lateral_sigma, off_the_sigma
+from courseware.lessons.lesson_02.small_room import STATIONS, quality, room, scans
 
 
 def test_the_room_itself_is_its_own_best_map_and_the_stations_stand_in_the_open():

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.lesson_03.exercises import off_the_cut
-from course_lib.lessons.lesson_03.figures import renderer_of
+from courseware.answers.lesson_03 import off_the_cut
+from courseware.lessons.lesson_03.figures import renderer_of
 
 
 @pytest.mark.parametrize("backend", ["vtk", "ray"])

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.lesson_04.time_of_flight import FAULTS, MODEL, capture
 from course_lib.rendering.camera import DepthCamera
+from courseware.lessons.lesson_04.time_of_flight import FAULTS, MODEL, capture
 
 SMALL = DepthCamera.sr4000().resized(88, 72)
 

@@ -5,9 +5,9 @@ import pytest
 from scipy.stats import norm
 
 from course_lib.geometry import wrap_angle
-from course_lib.lessons.kit.exercises import find_exercise, judge
-from course_lib.lessons.lesson_05.clouds import wagon_states, walk
-from course_lib.lessons.lesson_05.exercises import min_sigma
+from courseware.answers.lesson_05 import min_sigma
+from courseware.lessons.kit.exercises import find_exercise, judge
+from courseware.lessons.lesson_05.clouds import wagon_states, walk
 
 
 def test_a_yaw_that_the_oracle_does_not_judge_does_a_random_walk():

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.lesson_06.exercises import importance_mean
-from course_lib.lessons.lesson_06.figures import PAPER, behind_a_person
-from course_lib.lessons.lesson_06.forms import FORMS, peak, profile
+from courseware.answers.lesson_06 import importance_mean
+from courseware.lessons.lesson_06.figures import PAPER, behind_a_person
+from courseware.lessons.lesson_06.forms import FORMS, peak, profile
 
 
 def test_behind_a_person_the_papers_form_stands_at_the_truth_longest():

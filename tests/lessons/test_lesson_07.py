@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.lesson_07 import copies, stepper_panel
-from course_lib.lessons.lesson_07.exercises import stratified_error
+from courseware.answers.lesson_07 import stratified_error
+from courseware.lessons.lesson_07 import copies, stepper_panel
 
 
 def test_buttons_step_in_the_order_of_figure_1_and_a_step_that_cannot_come_is_told_and_changes_nothing():

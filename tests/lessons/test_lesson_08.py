@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.lesson_08.exercises import effective_frames
-from course_lib.lessons.lesson_08.panel import OFFSETS, AgreementTable, localize_along
-from course_lib.lessons.lesson_08.stored import stored_runs
+from courseware.answers.lesson_08 import effective_frames
+from courseware.lessons.lesson_08.panel import OFFSETS, AgreementTable, localize_along
+from courseware.lessons.lesson_08.stored import stored_runs
 
 
 def test_with_too_little_noise_it_lags_and_only_the_timed_error_and_the_score_say_so():

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.lesson_10.hotel import ALIKE, OUT_OF_101, carried_next_door, record, walk
-from course_lib.lessons.lesson_10.narrowing import MAX_PARTICLES, MIN_PARTICLES, kld_count, narrow, shares
-from course_lib.lessons.lesson_10.trials import KIDNAPPED, PERSON, Trace, alarms, follow, traces
+from courseware.lessons.lesson_10.hotel import ALIKE, OUT_OF_101, carried_next_door, record, walk
+from courseware.lessons.lesson_10.narrowing import MAX_PARTICLES, MIN_PARTICLES, kld_count, narrow, shares
+from courseware.lessons.lesson_10.trials import KIDNAPPED, PERSON, Trace, alarms, follow, traces
 
 
 def test_rooms_101_and_102_look_alike_but_room_103_and_the_corridor_do_not():

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.panorama_features import scene
-from course_lib.lessons.lesson_13.figures import band, half_circle
-from course_lib.lessons.lesson_13.matching import count_table
 from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
 from course_lib.spherical_stereo.matching.object_matching import match_views
+from courseware.lessons.kit.panorama_features import scene
+from courseware.lessons.lesson_13.figures import band, half_circle
+from courseware.lessons.lesson_13.matching import count_table
 
 
 def test_counting_both_ways_at_once_is_what_the_library_does():

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from course_lib.lessons.lesson_15.scores import hidden_score, min_object_weight, score, two_searches
 from course_lib.spherical_stereo import Landmark, Observation, PenaltyWeights, SemanticMap, penalty_table
+from courseware.lessons.lesson_15.scores import hidden_score, min_object_weight, score, two_searches
 
 
 def test_hue_settles_all_but_the_sofas_and_only_the_four_terms_together_give_poses():

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons import lesson_16
-from course_lib.lessons.lesson_16.fits import residual_over_heading
 from course_lib.spherical_stereo import Pose2D, fit_rigid_2d
+from courseware.lessons import lesson_16
+from courseware.lessons.lesson_16.fits import residual_over_heading
 
 
 def test_the_residual_is_lowest_at_the_fit_and_the_errors_are_those_of_the_closed_forms():

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from course_lib.beyond.look_alikes.evidence import detection_probabilities
-from course_lib.lessons.lesson_18 import room_map, room_scenes, scenes
-from course_lib.lessons.lesson_18.panel import MIRROR, PAIRS, ROOM, ranked, score_terms
-from course_lib.lessons.lesson_18.trials import answers_of
+from courseware.lessons.lesson_18 import room_map, room_scenes, scenes
+from courseware.lessons.lesson_18.panel import MIRROR, PAIRS, ROOM, ranked, score_terms
+from courseware.lessons.lesson_18.trials import answers_of
 
 
 @pytest.mark.parametrize(("hidden", "map_name"), [(0, ROOM), (4, MIRROR), (8, ROOM)])

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.foundation_3 import covariance_intersection
-from course_lib.lessons.lesson_19 import anywhere_panel, journey, misplaced, panel, stages, turn_and_look, world
+from courseware.lessons.foundation_3 import covariance_intersection
+from courseware.lessons.lesson_19 import anywhere_panel, journey, misplaced, panel, stages, turn_and_look, world
 
 STORY = (3.35, 3.30, 65)
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl.sequence import write_sequence
-from course_lib.lessons import lesson_20
-from course_lib.lessons.lesson_20.exercises import baseline_needed
-from course_lib.paths import REPOSITORY
+from courseware.answers.lesson_20 import baseline_needed
+from courseware.lessons import lesson_20
+from courseware.paths import REPOSITORY
 
 
 def test_every_misreading_shows_at_the_given_poses():

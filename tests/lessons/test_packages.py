@@ -7,8 +7,8 @@ import re
 
 import pytest
 
-from course_lib.lessons.kit.exercises import package_name
-from course_lib.paths import foundation_paths, notebook_paths
+from courseware.lessons.kit.exercises import package_name
+from courseware.paths import foundation_paths, notebook_paths
 
 PATHS = [*notebook_paths(), *foundation_paths()]
 
@@ -21,7 +21,7 @@ def code_of(path) -> str:
 @pytest.mark.parametrize("path", PATHS, ids=lambda path: path.name[:2])
 def test_a_package_hands_on_what_its_notebook_asks_for(path):
     name = package_name(path.name[:2])
-    package = importlib.import_module(f"course_lib.lessons.{name}")
+    package = importlib.import_module(f"courseware.lessons.{name}")
     asked = re.findall(rf"(?<![.\w]){name}\.(\w+)", code_of(path))
     assert [one for one in {*asked, "PANELS"} if not hasattr(package, one)] == []
 
@@ -29,7 +29,7 @@ def test_a_package_hands_on_what_its_notebook_asks_for(path):
 @pytest.mark.parametrize("path", PATHS, ids=lambda path: path.name[:2])
 def test_what_a_notebook_imports_from_the_library_is_there(path):
     for node in ast.walk(ast.parse(code_of(path))):
-        if isinstance(node, ast.ImportFrom) and node.module.startswith("course_lib"):
+        if isinstance(node, ast.ImportFrom) and node.module.startswith(("course_lib", "courseware")):
             module = importlib.import_module(node.module)
             for alias in node.names:
                 if not hasattr(module, alias.name):

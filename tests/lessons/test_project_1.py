@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.projects import AnswerError, one_outcome
-from course_lib.lessons.project_1.project import PROJECT, measure, no_later_frames, prepare
+from courseware.answers.project_1_task import PROJECT, measure, no_later_frames, prepare
+from courseware.lessons.kit.projects import AnswerError, one_outcome
 
 SEED = 10_001
 

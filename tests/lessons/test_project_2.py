@@ -6,11 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.projects import AnswerError, one_outcome
-from course_lib.lessons.project_2.project import PROJECT, measure, prepare
-from course_lib.lessons.project_2.rooms import project_rooms, record_room
-from course_lib.simulation.room.look_alike_recording import RecordingModels
 from course_lib.spherical_stereo.detection.detected_object import Detection
+from courseware.answers.project_2_task import PROJECT, measure, prepare
+from courseware.lessons.kit.projects import AnswerError, one_outcome
+from courseware.lessons.project_2.rooms import project_rooms, record_room
+from courseware.simulation.room.look_alike_recording import RecordingModels
 
 
 def test_a_pose_costs_its_error_here_and_a_metre_ahead_and_ours_is_nearer_than_the_paper():

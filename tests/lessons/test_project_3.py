@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.projects import AnswerError, one_outcome
-from course_lib.lessons.project_2.rooms import room_of
-from course_lib.lessons.project_3.project import DRAWS, PROJECT, checked_pairs, measure, points_of, prepare
+from courseware.answers.project_3_task import PROJECT, checked_pairs, measure, points_of
+from courseware.lessons.kit.projects import AnswerError, one_outcome
+from courseware.lessons.project_2.rooms import room_of
+from courseware.lessons.project_3.tasks import DRAWS, prepare
 
 BAD = {"neither None": 3, "observation twice": [(0, 1), (0, 2)], "landmark twice": [(0, 1), (1, 1)]}
 BAD |= {"not: 2, of 2": [(0, 1), (2, 2)], "not: 3, of 3": [(0, 3), (1, 2)], "not: -1": [(0, -1), (1, 2)]}

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.projects import AnswerError
-from course_lib.lessons.project_4.project import measure, prepare
-from course_lib.lessons.project_4.rivals import in_metres
-from course_lib.lessons.project_4.sessions import MAX_RANGE, session
+from courseware.answers.project_4_rivals import in_metres
+from courseware.answers.project_4_task import measure, prepare
+from courseware.lessons.kit.projects import AnswerError
+from courseware.lessons.project_4.sessions import MAX_RANGE, session
 
 
 def test_seeds_differ_in_what_is_secret_and_unit_and_code_are_found():

@@ -9,7 +9,7 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from course_lib.paths import foundation_paths, notebook_paths, project_paths
+from courseware.paths import foundation_paths, notebook_paths, project_paths
 from tests.notebooks.driven_lab import require_chromium, served_lab
 
 

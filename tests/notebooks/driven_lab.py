@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from course_lib.commands.lab import lab_command
-from course_lib.paths import REPOSITORY
+from courseware.commands.lab import lab_command
+from courseware.paths import REPOSITORY
 
 TOKEN = "for-this-test-only"
 HANGS_S = 1800  # only what hangs takes so long

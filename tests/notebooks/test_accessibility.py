@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from course_lib.lessons.kit.compression import compress
-from course_lib.paths import notebook_paths, numbered_paths
+from courseware.lessons.kit.compression import compress
+from courseware.paths import notebook_paths, numbered_paths
 from tests.notebooks.driven_lab import SESSION_IS_IDLE, open_lesson, serious_findings
 
 LESSON = next(path.name for path in notebook_paths() if path.name.startswith("06"))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from course_lib.paths import notebook_paths
+from courseware.paths import notebook_paths
 from tests.notebooks import driven_lab
 from tests.notebooks.driven_lab import STATES, open_lesson, wait_for_a_picture
 

@@ -4,7 +4,7 @@ import ast
 import re
 import types
 
-from course_lib.lessons.kit.exercises import find_exercise, judge, lesson_exercises
+from courseware.lessons.kit.exercises import find_exercise, judge, lesson_exercises
 from tools.refresh import solution_cell, stub_cell
 
 # Seeds other than that of `check`: what is right or wrong must not hang on one set of inputs.

@@ -7,11 +7,11 @@ import re
 
 import pytest
 
-from course_lib.classroom.points import BY_HAND, SCORE_POINTS, most_of
-from course_lib.lessons.kit.exercises import find_exercise, judge, lesson_exercises
-from course_lib.lessons.kit.forbidden import forbidden_module
-from course_lib.lessons.kit.projects import find_project, is_better, one_outcome, project_names, stored_rivals
-from course_lib.paths import REPOSITORY, project_paths
+from courseware.classroom.points import BY_HAND, SCORE_POINTS, most_of
+from courseware.lessons.kit.exercises import find_exercise, judge, lesson_exercises
+from courseware.lessons.kit.forbidden import forbidden_module
+from courseware.lessons.kit.projects import find_project, is_better, one_outcome, project_names, stored_rivals
+from courseware.paths import REPOSITORY, project_paths
 from tests.notebooks.test_exercise_cells import SEEDS, functions_of, only, require_unsolved_stub, stub_of
 
 SOLUTIONS = REPOSITORY / "notebooks" / "projects" / "solutions"
@@ -77,7 +77,7 @@ def test_the_model_solution_passes_every_stage_without_what_is_forbidden(project
 
 
 def test_the_package_hands_on_what_the_notebook_names(project):
-    package = importlib.import_module(f"course_lib.lessons.project_{project.number[1:]}")
+    package = importlib.import_module(f"courseware.lessons.project_{project.number[1:]}")
     code = "\n".join(cell.source for cell in project.code_cells)
     assert set(re.findall(rf"\bproject_{project.number[1:]}\.(\w+)", code)) <= set(dir(package))
 

@@ -4,9 +4,9 @@ import ast
 import re
 import statistics
 
-from course_lib.commands.nbval_tolerance import declared_tolerance
-from course_lib.commands.saved_panels import WIDGET_VIEW
-from course_lib.paths import REPOSITORY, foundation_paths, notebook_paths
+from courseware.commands.nbval_tolerance import declared_tolerance
+from courseware.commands.saved_panels import WIDGET_VIEW
+from courseware.paths import REPOSITORY, foundation_paths, notebook_paths
 from tests.notebooks.conftest import read
 from tools.refresh import MAX_BYTES, METADATA
 
@@ -125,5 +125,5 @@ def test_no_lesson_uses_widgets_that_hang_or_global_random_numbers(lesson):
 
 
 def test_no_plumbing_uses_widgets_that_hang():
-    for path in (REPOSITORY / "course_lib" / "lessons").glob("**/*.py"):
+    for path in (REPOSITORY / "courseware" / "lessons").glob("**/*.py"):
         assert not names_in(path.read_text(encoding="utf-8")) & FORBIDDEN_WIDGETS, path.name

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from course_lib.paths import REPOSITORY
+from courseware.paths import REPOSITORY
 from tests.notebooks.driven_lab import require_chromium
 
 playwright = pytest.importorskip("playwright.sync_api")

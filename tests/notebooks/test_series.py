@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from course_lib.lessons.kit.series_pictures import MAX_BYTES, MAX_SIZE, write_picture
-from course_lib.paths import REPOSITORY, foundation_paths, notebook_paths, numbered_paths
+from courseware.paths import REPOSITORY, foundation_paths, notebook_paths, numbered_paths
 from tests.notebooks.conftest import read
+from tools.series_pictures import MAX_BYTES, MAX_SIZE, write_picture
 
 FOLDER = REPOSITORY / "notebooks"
 README, GLOSSARY = ((FOLDER / name).read_text(encoding="utf-8") for name in ("README.md", "GLOSSARY.md"))

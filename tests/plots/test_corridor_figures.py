@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from course_lib.plots.corridor_figures import floor_plan, plane_cut
+from courseware.plots.corridor_figures import floor_plan, plane_cut
 
 BOX = trimesh.creation.box(bounds=[[0.0, 0.0, 0.0], [4.0, 2.0, 1.0]])
 

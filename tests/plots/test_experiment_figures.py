@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.plots.experiment_figures import covariance_figure
+from courseware.plots.experiment_figures import covariance_figure
 
 
 def runs_of(factor, rng):

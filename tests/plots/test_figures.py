@@ -6,8 +6,8 @@ import sys
 
 import numpy as np
 
-import course_lib.plots
-from course_lib.plots import figures
+import courseware.plots
+from courseware.plots import figures
 
 
 def test_series_differ_in_colour_marker_and_line():
@@ -25,6 +25,6 @@ def test_where_nothing_was_hit_the_hatched_ground_shows_through():
 
 
 def test_commands_draw_where_there_is_no_ipython():
-    names = [f"course_lib.plots.{module.name}" for module in pkgutil.iter_modules(course_lib.plots.__path__)]
+    names = [f"courseware.plots.{module.name}" for module in pkgutil.iter_modules(courseware.plots.__path__)]
     code = f"import sys; sys.modules['IPython'] = sys.modules['ipywidgets'] = None; import {', '.join(names)}"
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from course_lib.plots.location_scene import location_scene
-from course_lib.plots.panorama_drawing import class_style
-from course_lib.plots.scene_page import page_html
 from course_lib.spherical_stereo import SemanticLocalizer, StereoRig
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
+from courseware.plots.location_scene import location_scene
+from courseware.plots.panorama_drawing import class_style
+from courseware.plots.scene_page import page_html
 from tests.plots.test_track_scene import of_colour
 from tests.spherical_stereo.stereo_scene import BASELINE, mapped_scene
 

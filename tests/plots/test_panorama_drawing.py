@@ -5,8 +5,8 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from course_lib.plots.figures import new_figure
-from course_lib.plots.panorama_drawing import draw_box, draw_numbers, panorama
+from courseware.plots.figures import new_figure
+from courseware.plots.panorama_drawing import draw_box, draw_numbers, panorama
 
 WIDTH = 1280
 IMAGE = np.full((WIDTH // 2, WIDTH, 3), 120, np.uint8)

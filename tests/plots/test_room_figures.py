@@ -4,11 +4,11 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from course_lib.experiments.ambiguity import AmbiguityMap
-from course_lib.plots.room_figures import ambiguity_figure, pose_figure
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
+from courseware.experiments.ambiguity import AmbiguityMap
+from courseware.plots.room_figures import ambiguity_figure, pose_figure
 from tests.beyond.look_alikes.look_alike_scene import SYMMETRIC
 
 

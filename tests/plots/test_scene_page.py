@@ -10,9 +10,9 @@ import zlib
 import numpy as np
 import pytest
 
-from course_lib.commands.output import write_scene
-from course_lib.plots import scenes
-from course_lib.plots.scene_page import ScenePageError, page_html
+from courseware.commands.output import write_scene
+from courseware.plots import scenes
+from courseware.plots.scene_page import ScenePageError, page_html
 
 WORDS = {"title": 'Axes & "more"', "alt": "The axes of a pose <seen> from above"}
 STATE = np.array([1.0, 2.0, 3.0, 0.1, 0.2, 0.3])

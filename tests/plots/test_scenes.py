@@ -6,7 +6,7 @@ import trimesh
 
 from course_lib.depth_mcl import DepthCamera, SceneMap
 from course_lib.geometry import optical_pose, pose_matrix
-from course_lib.plots import scenes
+from courseware.plots import scenes
 
 STATE = np.array([2.0, -1.0, 1.2, 0.2, -0.3, 0.8])
 CAMERA = DepthCamera.from_fov(40, 30, 60, 45, near=0.5, far=8.0)

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from course_lib.depth_mcl import SceneMap, read_sequence
-from course_lib.experiments.recordings import Run
 from course_lib.geometry import state_from_optical_pose
-from course_lib.plots.figures import BLUE, ORANGE, PURPLE, VERMILION
-from course_lib.plots.scene_page import page_html
-from course_lib.plots.track_scene import track_scene, worst_frames
+from course_lib.recordings import Run
+from courseware.plots.figures import BLUE, ORANGE, PURPLE, VERMILION
+from courseware.plots.scene_page import page_html
+from courseware.plots.track_scene import track_scene, worst_frames
 
 NEAR, FAR = 0.1, 10.0
 FRAMES = 40

@@ -3,8 +3,8 @@
 import numpy as np
 import trimesh
 
-from course_lib.simulation.room.scene import Lamp, Room, RoomObject
-from course_lib.simulation.textures import TexturedMesh
+from courseware.simulation.room.scene import Lamp, Room, RoomObject
+from courseware.simulation.textures import TexturedMesh
 
 
 def box_mesh(low, high, colour, inward=False) -> TexturedMesh:

@@ -4,7 +4,7 @@ import importlib
 
 import pytest
 
-from course_lib.cli import call
+from courseware.cli import call
 
 
 @pytest.fixture

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from course_lib.experiments.room_evaluation import Matching
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.recording import TrueObject
+from courseware.experiments.room_evaluation import Matching
 from tools import detector_evaluation
 from tools.detector_evaluation import (
     DetectionScoreError,

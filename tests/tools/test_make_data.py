@@ -9,8 +9,8 @@ from tools import make_data
 # What is made -> where, by what, and what that returns.
 MADE = {
     "corridor": ("tools.corridor_data", "make_corridor_data", {"measured": {}}),
-    "room": ("course_lib.simulation.room.data", "make_room_data", {"pairs": 40, "objects": 14}),
-    "finale": ("course_lib.simulation.room.finale_data", "make_finale_data", {"objects": 13, "triangles": 60_000}),
+    "room": ("courseware.simulation.room.data", "make_room_data", {"pairs": 40, "objects": 14}),
+    "finale": ("courseware.simulation.room.finale_data", "make_finale_data", {"objects": 13, "triangles": 60_000}),
 }
 
 

@@ -8,8 +8,8 @@ import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from course_lib.commands.test import nbval_options
-from course_lib.paths import REPOSITORY
+from courseware.commands.test import nbval_options
+from courseware.paths import REPOSITORY
 from tools import refresh
 from tools.refresh import RefreshError
 
@@ -28,15 +28,15 @@ def written(folder, *sources: str):
 CELLS = [
     "x = 2\nprint('x =', x)",
     """
-from course_lib.lessons.kit.panel import Drawing, Panel, Switch
-from course_lib.lessons.kit.compression import png_bytes
-from course_lib.plots import figures
+from courseware.lessons.kit.panel import Drawing, Panel, Switch
+from courseware.lessons.kit.compression import png_bytes
+from courseware.plots import figures
 png = png_bytes(figures.new_figure(size=(1, 1))[0])
 Panel("test", [Switch("on", "on")], lambda on: Drawing(png, "A small empty picture", "on: 1.25")).show()
 """,
     """
 import time
-from course_lib.lessons import progress
+from courseware.lessons import progress
 for step in progress(range(6), "six steps"):
     time.sleep(0.12)
 print("done:", step + 1)
@@ -44,8 +44,8 @@ print("done:", step + 1)
     "print('error', 2.04, 'm')",
     """
 import numpy as np
-from course_lib.lessons import show_scene
-from course_lib.plots.scenes import body_axes, new_plotter
+from courseware.lessons import show_scene
+from courseware.plots.scenes import body_axes, new_plotter
 plotter = new_plotter()
 plotter.add_mesh(body_axes(np.zeros(6), 0.5), rgb=True)
 show_scene(plotter, "99_axes", title="Three axes", alt="Three axes that meet at the origin")

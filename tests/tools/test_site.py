@@ -8,9 +8,9 @@ import threading
 import nbformat
 import pytest
 
-from course_lib.classroom.assignment_cells import read_assignments, tag_of
-from course_lib.classroom.leaks import find_leaks, plain, solutions, text_of
-from course_lib.cli import call
+from courseware.classroom.assignment_cells import read_assignments, tag_of
+from courseware.classroom.leaks import find_leaks, plain, solutions, text_of
+from courseware.cli import call
 from tests.notebooks.driven_lab import require_chromium, serious_findings
 from tools import bench, site, site_pages
 

@@ -16,11 +16,11 @@ from joblib import cpu_count
 from course_lib.depth_mcl.localizer import SIGMA_XY_YAW
 from course_lib.depth_mcl.motion import BODY_AXES
 from course_lib.depth_mcl.sequence import read_sequence
-from course_lib.experiments.recordings import system_noise
-from course_lib.experiments.results import versions
-from course_lib.paths import data_path, notebook_paths
+from course_lib.recordings import system_noise
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
+from courseware.experiments.results import versions
+from courseware.paths import data_path, notebook_paths
 from tools.benchmarks import growth, side_by_side, waiting
 from tools.benchmarks.side_by_side import TOOLS, Scene
 

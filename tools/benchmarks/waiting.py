@@ -13,9 +13,9 @@ from nbclient import NotebookClient
 
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
 from course_lib.geometry import state_from_optical_pose
-from course_lib.paths import REPOSITORY, data_path, notebook_paths
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.sensor import subsample_depth
+from courseware.paths import REPOSITORY, data_path, notebook_paths
 from tools.benchmarks.side_by_side import Scene
 
 SMALL_IMAGE, FEW_PARTICLES = (44, 36), 30
@@ -46,11 +46,11 @@ def start_up(repeats: int) -> dict[str, float]:
 def room_seconds(poses: int) -> dict[str, float]:
     """Seconds a pose of paper 2 takes from its two images, and those of loading models, which are not in it."""
     begun = time.perf_counter()
-    from course_lib.experiments.room import localize_pair
     from course_lib.spherical_stereo.detection.detector import YoloDetector
     from course_lib.spherical_stereo.localizer import SemanticLocalizer
     from course_lib.spherical_stereo.recording import read_stereo_recording
     from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+    from courseware.experiments.room import localize_pair
 
     recording = read_stereo_recording(data_path("room/experiment_1"))
     semantic_map = SemanticMap.load(data_path("room/semantic_map.json"))

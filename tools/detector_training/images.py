@@ -9,9 +9,9 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from course_lib.experiments.room_evaluation import counts_as_object
-from course_lib.simulation.room.training_images import read_image_list
 from course_lib.spherical_stereo.recording import true_object
+from courseware.experiments.room_evaluation import counts_as_object
+from tools.training_images import read_image_list
 
 # Width of a whole panorama in memory: a 1280 x 512 network input is one and a quarter panorama, 1.25 * 1024 columns.
 STORED_WIDTH = 1024

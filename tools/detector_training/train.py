@@ -14,7 +14,6 @@ import numpy as np
 import torch
 
 from course_lib.files import temporary_folder
-from course_lib.simulation.room.training_images import read_image_list
 from course_lib.spherical_stereo.detection.darknet import check_names, class_count, read_cfg, read_names
 from tools.detector_evaluation import DetectionScoreError, Validation, measure_detector
 from tools.detector_training import workers
@@ -22,6 +21,7 @@ from tools.detector_training.images import AugmentationRanges, TrainingDataError
 from tools.detector_training.loss import Loss, Targets, make_targets, yolo_loss
 from tools.detector_training.network import TrainableNetwork, read_weights, write_weights
 from tools.detector_training.state import AveragedNetwork, Position, TrainingState, learning_rate
+from tools.training_images import read_image_list
 
 MAX_GRADIENT = 10.0  # longer ones are shortened: one odd batch must not undo the ones before
 BATCHES_AHEAD = 4  # made while the training works: enough to bridge a slow one, little memory

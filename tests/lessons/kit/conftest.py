@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from course_lib.lessons.kit import predictions
-from course_lib.lessons.kit.student_record import RECORD
+from courseware.lessons.kit import predictions
+from courseware.lessons.kit.student_record import RECORD
 
 
 @pytest.fixture

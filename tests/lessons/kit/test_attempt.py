@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from course_lib.lessons.kit.attempt import MAX_CHARACTERS, attempt
+from courseware.lessons.kit.attempt import MAX_CHARACTERS, attempt
 
 
 def endless():

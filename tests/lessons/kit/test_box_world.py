@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from course_lib.geometry import BODY_FROM_OPTICAL
-from course_lib.lessons.kit.box_world import Box, BoxWorld
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
+from courseware.lessons.kit.box_world import Box, BoxWorld
 
 AHEAD = Box((2.0, -1.0, -1.0), (3.0, 1.0, 1.0), 0.5)
 

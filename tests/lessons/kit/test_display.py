@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from course_lib.lessons.kit.compression import compress, png_bytes
-from course_lib.lessons.kit.display import FigureError, Picture, described, require_labels, show
-from course_lib.plots import figures
+from courseware.lessons.kit.compression import compress, png_bytes
+from courseware.lessons.kit.display import FigureError, Picture, described, require_labels, show
+from courseware.plots import figures
 
 
 def finished_figure():
@@ -48,7 +48,7 @@ def test_a_photograph_keeps_its_colours_and_a_drawing_its_few(monkeypatch):
     u, v = np.meshgrid(np.linspace(0, 1, 200), np.linspace(0, 1, 100))
     axes.imshow(np.dstack([u, v, 1 - u]), extent=(0, 1, 0, 1))
     shown = []
-    monkeypatch.setattr("course_lib.lessons.kit.display.display", shown.append)
+    monkeypatch.setattr("courseware.lessons.kit.display.display", shown.append)
     show(figure)
     show(figure, photograph=True)
     few, many = (len(np.unique(pixels(one.data).reshape(-1, 3), axis=0)) for one in shown)
@@ -78,7 +78,7 @@ def test_a_picture_carries_its_words_is_sharp_on_fine_screens_and_is_never_wider
 
 def test_lines_stay_lines_with_a_caption_and_the_same_bytes_and_names_of_categories_need_no_unit(monkeypatch):
     shown = []
-    monkeypatch.setattr("course_lib.lessons.kit.display.display", shown.append)
+    monkeypatch.setattr("courseware.lessons.kit.display.display", shown.append)
     for _ in range(2):
         figure, axes = figures.new_figure(size=(5, 2))
         axes.bar(["paper", "ours"], [1, 2])

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.exercises import (
+from courseware.lessons.kit.exercises import (
     NOT_ATTEMPTED,
     Exercise,
     UnknownExerciseError,

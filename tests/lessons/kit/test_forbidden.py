@@ -4,7 +4,7 @@ import types
 
 import pytest
 
-from course_lib.lessons.kit.forbidden import forbidden_module
+from courseware.lessons.kit.forbidden import forbidden_module
 
 OWN = """
 import course_lib.spherical_stereo as stereo

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from course_lib.geometry import wrap_angle
-from course_lib.lessons.kit import general_mistakes as general
-from course_lib.lessons.kit.exercises import Exercise, judge
+from courseware.lessons.kit import general_mistakes as general
+from courseware.lessons.kit.exercises import Exercise, judge
 
 
 def turned(R, points, theta):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.intervals import bootstrap_median, median_text, share_text
+from courseware.lessons.kit.intervals import bootstrap_median, median_text, share_text
 
 
 def test_it_covers_the_true_median_in_about_95_of_100_samples():

@@ -5,10 +5,10 @@ import os
 import nbformat
 import pytest
 
-from course_lib.lessons.kit import lesson_progress
-from course_lib.lessons.kit.exercises import lesson_exercises
-from course_lib.lessons.kit.lesson_progress import Progress, progress_in, tables
-from course_lib.paths import notebook_paths, numbered_paths
+from courseware.lessons.kit import lesson_progress
+from courseware.lessons.kit.exercises import lesson_exercises
+from courseware.lessons.kit.lesson_progress import Progress, progress_in, tables
+from courseware.paths import notebook_paths, numbered_paths
 
 ASKED = Progress("06 · Likelihood", 2, ("06.1", "06.2", "06.3", "06.4"))
 

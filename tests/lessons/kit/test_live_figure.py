@@ -1,6 +1,6 @@
 """A live figure shows what a figure drawn anew would show."""
 
-from course_lib.lessons.kit.live_figure import LiveFigure
+from courseware.lessons.kit.live_figure import LiveFigure
 from tests.lessons.kit.test_display import finished_figure
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from course_lib.lessons.kit.mistakes import EditError, edited, read_mistakes
+from courseware.lessons.kit.mistakes import EditError, edited, read_mistakes
 
 OFFSET = 1.0
 

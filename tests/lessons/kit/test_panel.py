@@ -8,10 +8,10 @@ import ipywidgets
 import pytest
 from PIL import Image
 
-from course_lib.lessons.kit.compression import png_bytes
-from course_lib.lessons.kit.display import FigureError
-from course_lib.lessons.kit.panel import VIEW, Choice, Drawing, Panel, Slider, Switch
-from course_lib.plots import figures
+from courseware.lessons.kit.compression import png_bytes
+from courseware.lessons.kit.display import FigureError
+from courseware.lessons.kit.panel import VIEW, Choice, Drawing, Panel, Slider, Switch
+from courseware.plots import figures
 
 PNG = png_bytes(figures.new_figure(size=(1, 1))[0])
 CONTROLS = [Slider("x", "x [m]", 0.01, 4, 1, 0.05), Choice("kind", "kind", ("a", "b"), "a"), Switch("on", "on")]

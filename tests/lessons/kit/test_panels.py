@@ -7,12 +7,12 @@ import cv2
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit.exercises import package_name
-from course_lib.lessons.kit.panel import Choice, Panel, Slider
-from course_lib.paths import foundation_paths, notebook_paths
+from courseware.lessons.kit.exercises import package_name
+from courseware.lessons.kit.panel import Choice, Panel, Slider
+from courseware.paths import foundation_paths, notebook_paths
 
 PATHS = [*notebook_paths(), *foundation_paths()]
-LESSONS = [importlib.import_module(f"course_lib.lessons.{package_name(path.name[:2])}") for path in PATHS]
+LESSONS = [importlib.import_module(f"courseware.lessons.{package_name(path.name[:2])}") for path in PATHS]
 MAKERS = {title: maker for lesson in LESSONS for title, maker in lesson.PANELS.items()}
 
 

@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from course_lib.lessons.kit.exercises import check
-from course_lib.lessons.kit.predictions import Predictions, predict, recall
-from course_lib.lessons.kit.student_record import RECORD, read_record
+from courseware.lessons.kit.exercises import check
+from courseware.lessons.kit.predictions import Predictions, predict, recall
+from courseware.lessons.kit.student_record import RECORD, read_record
 
 QUESTIONS = ("How many times more?", "How far away?")
 

@@ -6,9 +6,9 @@ import json
 import numpy as np
 import pytest
 
-from course_lib.lessons.kit import projects
-from course_lib.lessons.kit.exercises import find_exercise, lesson_numbers
-from course_lib.lessons.kit.projects import Project, Result, Rival, Task, find_project, one_outcome, project_names
+from courseware.lessons.kit import projects
+from courseware.lessons.kit.exercises import find_exercise, lesson_numbers
+from courseware.lessons.kit.projects import Project, Result, Rival, Task, find_project, one_outcome, project_names
 
 SEEDS = (901, 902, 903, 904, 905, 906)
 

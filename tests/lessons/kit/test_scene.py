@@ -8,14 +8,14 @@ import pytest
 import pyvista
 from PIL import Image
 
-from course_lib.lessons import show_scene
-from course_lib.lessons.kit import scene
-from course_lib.lessons.kit.display import FigureError
-from course_lib.lessons.kit.scene import MAX_PICTURE_BYTES, Scene, small_picture
-from course_lib.paths import STORE_SCENES
-from course_lib.plots import scenes
-from course_lib.plots.scene_page import ScenePageError
-from course_lib.plots.scenes import SceneError
+from courseware.lessons import show_scene
+from courseware.lessons.kit import scene
+from courseware.lessons.kit.display import FigureError
+from courseware.lessons.kit.scene import MAX_PICTURE_BYTES, Scene, small_picture
+from courseware.paths import STORE_SCENES
+from courseware.plots import scenes
+from courseware.plots.scene_page import ScenePageError
+from courseware.plots.scenes import SceneError
 
 WORDS = {"title": 'Axes & "more"', "alt": "The axes of a pose seen from above"}
 STORED, YOURS = "scenes/99_axes.html", "scenes/yours/99_axes.html"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from course_lib.geometry import optical_pose, pose_matrix
-from course_lib.lessons.kit.scene_objects import arrows, depth_surface
+from courseware.lessons.kit.scene_objects import arrows, depth_surface
 from tests.plots.test_scenes import CAMERA, STATE
 
 DEPTH = np.full(CAMERA.shape, 3.0)

@@ -5,13 +5,13 @@ import re
 
 import pytest
 
-from course_lib.cli import main
-from course_lib.lessons.kit.exercises import check
-from course_lib.lessons.kit.lesson_progress import Progress, Table, tables
-from course_lib.lessons.kit.predictions import Predictions
-from course_lib.lessons.kit.show_progress import as_page, as_text, update_page
-from course_lib.lessons.kit.student_record import RECORD
-from course_lib.paths import numbered_paths
+from courseware.cli import main
+from courseware.lessons.kit.exercises import check
+from courseware.lessons.kit.lesson_progress import Progress, Table, tables
+from courseware.lessons.kit.predictions import Predictions
+from courseware.lessons.kit.show_progress import as_page, as_text, update_page
+from courseware.lessons.kit.student_record import RECORD
+from courseware.paths import numbered_paths
 from tests.lessons.kit.conftest import right_06_1
 
 NOW = datetime.datetime(2026, 11, 23, 9, 5)

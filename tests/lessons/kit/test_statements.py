@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from course_lib.lessons.kit.statements import needed, read_statements, without_magics
+from courseware.lessons.kit.statements import needed, read_statements, without_magics
 
 
 def ran(function, *cells):

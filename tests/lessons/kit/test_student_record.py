@@ -4,9 +4,9 @@ import os
 
 import pytest
 
-from course_lib.lessons.kit.exercises import check
-from course_lib.lessons.kit.predictions import Predictions
-from course_lib.lessons.kit.student_record import RecordError, read_record
+from courseware.lessons.kit.exercises import check
+from courseware.lessons.kit.predictions import Predictions
+from courseware.lessons.kit.student_record import RecordError, read_record
 from tests.lessons.kit.conftest import right_06_1
 
 

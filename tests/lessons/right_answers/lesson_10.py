@@ -6,7 +6,7 @@ from statistics import NormalDist
 import numpy as np
 from scipy.optimize import brentq
 
-from course_lib.lessons.lesson_10.adaptive_count import kld_count
+from courseware.lessons.lesson_10.adaptive_count import kld_count
 
 ENOUGH = 10**6
 

@@ -14,14 +14,14 @@ import pytest
 
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor.materials import WALL_PAINT
-from course_lib.simulation.corridor.mesh_building import MeshBuilder, Placement
-from course_lib.simulation.corridor.recorded_runs import HandModel, WagonModel
-from course_lib.simulation.corridor.surface_fusion import FusionModel
-from course_lib.simulation.corridor.world import TrueWorld
-from course_lib.simulation.data_folder import checksums, field_comments
-from course_lib.simulation.sensors.laser_survey import ScannerModel
-from course_lib.simulation.sensors.ray_casting import WorldCaster
+from courseware.simulation.corridor.materials import WALL_PAINT
+from courseware.simulation.corridor.mesh_building import MeshBuilder, Placement
+from courseware.simulation.corridor.recorded_runs import HandModel, WagonModel
+from courseware.simulation.corridor.surface_fusion import FusionModel
+from courseware.simulation.corridor.world import TrueWorld
+from courseware.simulation.data_folder import checksums, field_comments
+from courseware.simulation.sensors.laser_survey import ScannerModel
+from courseware.simulation.sensors.ray_casting import WorldCaster
 from tools import corridor_data as data
 
 LONG = 8.0  # m: a box of 8 x 2.4 x 2.4 m instead of the corridor

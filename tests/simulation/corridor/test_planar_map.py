@@ -5,7 +5,7 @@ import pytest
 import trimesh
 
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor.planar_map import planar_simplification
+from tools.planar_map import planar_simplification
 
 
 def rough_room(rng, noise=0.01):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.simulation.corridor.recorded_runs import (
+from courseware.simulation.corridor.recorded_runs import (
     FloorSurveyModel,
     PushModel,
     WagonModel,
@@ -12,7 +12,7 @@ from course_lib.simulation.corridor.recorded_runs import (
     survey_floor_line,
     wagon_run,
 )
-from course_lib.simulation.corridor.world import make_corridor
+from courseware.simulation.corridor.world import make_corridor
 
 SEEDS = (0, 1, 2, 3)
 

@@ -6,8 +6,8 @@ import pytest
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor.seeded_recording import HARDSHIPS, building_of_data, record_seed
-from course_lib.simulation.corridor.world import run_day
+from courseware.simulation.corridor.seeded_recording import HARDSHIPS, building_of_data, record_seed
+from courseware.simulation.corridor.world import run_day
 
 CAMERA = DepthCamera.sr4000().resized(22, 18)
 

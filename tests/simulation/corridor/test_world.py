@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from course_lib.simulation.corridor.world import CLUTTER, LEFT, DayModel, draw_building, make_corridor, scene_change
+from courseware.simulation.corridor.world import CLUTTER, LEFT, DayModel, draw_building, make_corridor, scene_change
 
 
 @pytest.fixture(scope="module")

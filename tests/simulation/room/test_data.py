@@ -5,20 +5,20 @@ import pytest
 
 from course_lib.geometry import wrap_angle
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor.surface_fusion import FusionModel
-from course_lib.simulation.data_folder import checksums
-from course_lib.simulation.room import finale_data
-from course_lib.simulation.room.data import PRODUCTS, RoomModels, make_room_data
-from course_lib.simulation.room.depth_world import MAP, STREAM, DepthSurveyModel, surveyed_mesh
-from course_lib.simulation.room.experiment_room import make_experiment_room
-from course_lib.simulation.room.furnishing import make_look_alike_room
-from course_lib.simulation.room.look_alike_recording import RecordingModels
-from course_lib.simulation.room.measurement_places import MEASUREMENT_PLACES
-from course_lib.simulation.room.survey import RoomSurveyModel
-from course_lib.simulation.room.training_images import make_room_images, read_image_list
-from course_lib.simulation.sensors.laser_survey import ScannerModel
 from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+from courseware.simulation.corridor.surface_fusion import FusionModel
+from courseware.simulation.data_folder import checksums
+from courseware.simulation.room import finale_data
+from courseware.simulation.room.data import PRODUCTS, RoomModels, make_room_data
+from courseware.simulation.room.depth_world import MAP, STREAM, DepthSurveyModel, surveyed_mesh
+from courseware.simulation.room.experiment_room import make_experiment_room
+from courseware.simulation.room.furnishing import make_look_alike_room
+from courseware.simulation.room.look_alike_recording import RecordingModels
+from courseware.simulation.room.measurement_places import MEASUREMENT_PLACES
+from courseware.simulation.room.survey import RoomSurveyModel
+from courseware.simulation.sensors.laser_survey import ScannerModel
+from tools.training_images import make_room_images, read_image_list
 
 SMALL = RoomModels(width=320, places=(3,), survey=RoomSurveyModel(places=3, width=320, fewest_pixels=10))
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from course_lib.geometry import wrap_angle
-from course_lib.simulation.room.experiment_room import LAYOUT, make_experiment_room
-from course_lib.simulation.room.furnishing import LookAlikeLimits, make_look_alike_room, make_room
-from course_lib.simulation.room.look_alike_recording import WalkModel, measurement_poses, walk_from
-from course_lib.simulation.room.scene import clear_of, distance_to, footprint, overlap
+from courseware.simulation.room.experiment_room import LAYOUT, make_experiment_room
+from courseware.simulation.room.furnishing import LookAlikeLimits, make_look_alike_room, make_room
+from courseware.simulation.room.look_alike_recording import WalkModel, measurement_poses, walk_from
+from courseware.simulation.room.scene import clear_of, distance_to, footprint, overlap
 
 SEEDS = (10_200, 10_201, 10_202)
 LIMITS, WALK = LookAlikeLimits(), WalkModel()

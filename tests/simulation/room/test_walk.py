@@ -6,12 +6,12 @@ import pytest
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import state_from_optical_pose
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.simulation.corridor.recorded_runs import steps_and_turns
-from course_lib.simulation.corridor.surface_fusion import FusionModel
-from course_lib.simulation.room.depth_world import DepthSurveyModel, WalkModel, record_walk, walk_states
-from course_lib.simulation.room.furnishing import make_look_alike_room
-from course_lib.simulation.room.scene import NoFreePlace, distance_to, footprint
-from course_lib.simulation.sensors.laser_survey import ScannerModel
+from courseware.simulation.corridor.recorded_runs import steps_and_turns
+from courseware.simulation.corridor.surface_fusion import FusionModel
+from courseware.simulation.room.depth_world import DepthSurveyModel, WalkModel, record_walk, walk_states
+from courseware.simulation.room.furnishing import make_look_alike_room
+from courseware.simulation.room.scene import NoFreePlace, distance_to, footprint
+from courseware.simulation.sensors.laser_survey import ScannerModel
 
 SEEDS = (10_050, 10_051, 10_052)
 

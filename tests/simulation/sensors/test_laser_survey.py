@@ -5,11 +5,11 @@ import dataclasses
 import numpy as np
 import pytest
 
-from course_lib.simulation.corridor.materials import RUBBER, WALL_PAINT
-from course_lib.simulation.corridor.mesh_building import MeshBuilder, Placement
-from course_lib.simulation.corridor.surface_fusion import FusionModel, fuse
-from course_lib.simulation.sensors.laser_survey import ScannerModel, registration_error, scan, survey
-from course_lib.simulation.sensors.ray_casting import WorldCaster
+from courseware.simulation.corridor.materials import RUBBER, WALL_PAINT
+from courseware.simulation.corridor.mesh_building import MeshBuilder, Placement
+from courseware.simulation.corridor.surface_fusion import FusionModel, fuse
+from courseware.simulation.sensors.laser_survey import ScannerModel, registration_error, scan, survey
+from courseware.simulation.sensors.ray_casting import WorldCaster
 
 COARSE = ScannerModel(step_deg=0.5)
 TRUE_REGISTRATION = dataclasses.replace(

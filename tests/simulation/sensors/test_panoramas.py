@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from course_lib.geometry import pose_matrix
-from course_lib.simulation.room.furnishing import make_room
-from course_lib.simulation.room.stereo_photographs import object_boxes
-from course_lib.simulation.sensors.panorama_renderer import BACKGROUND, PanoramaRenderer
-from course_lib.simulation.sensors.panorama_rig import (
+from course_lib.spherical_stereo.panorama import direction_to_pixel
+from courseware.simulation.room.furnishing import make_room
+from courseware.simulation.room.stereo_photographs import object_boxes
+from courseware.simulation.sensors.panorama_renderer import BACKGROUND, PanoramaRenderer
+from courseware.simulation.sensors.panorama_rig import (
     NEARLY_PERFECT_RIG,
     PanoramaCameraModel,
     RigModel,
@@ -17,7 +18,6 @@ from course_lib.simulation.sensors.panorama_rig import (
     photograph,
     stand_up,
 )
-from course_lib.spherical_stereo.panorama import direction_to_pixel
 from tests.simulation.plain_room import plain_object, plain_room
 
 WIDTH = 640

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.simulation.sensors.ray_casting import WorldCaster
+from courseware.simulation.sensors.ray_casting import WorldCaster
 
 
 def test_distance_and_cosine_of_a_plane_in_the_directions_own_unit_and_a_miss_is_infinite():

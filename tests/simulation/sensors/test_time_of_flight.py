@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from course_lib.rendering.camera import DepthCamera
-from course_lib.simulation.sensors.ray_casting import WorldCaster
-from course_lib.simulation.sensors.time_of_flight import (
+from courseware.simulation.sensors.ray_casting import WorldCaster
+from courseware.simulation.sensors.time_of_flight import (
     CalibrationErrors,
     CalibrationModel,
     TimeOfFlightCamera,

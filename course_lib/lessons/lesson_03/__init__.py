@@ -1,9 +1,0 @@
-"""Lesson 03, GPU scene simulation: its small scenes and what it measures on them, figures and panel."""
-
-# ruff: noqa: I001 (short lines)
-from course_lib.lessons.kit.box_world import box_map
-from course_lib.lessons.kit.opengl import vtk
-from course_lib.lessons.lesson_03.figures import PANELS, SLOPES, agree_figure, buffer_figure, camera_panel
-from course_lib.lessons.lesson_03.figures import idea_figure, side_view, time_figure, triangle_figure, window_figure
-from course_lib.lessons.lesson_03.scenes import buffer_step, corridor, corridor_end, seconds_per_view
-from course_lib.lessons.lesson_03.scenes import slanted_wall_error, views_that_see, wall_with_hole

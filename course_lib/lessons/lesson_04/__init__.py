@@ -1,8 +1,0 @@
-"""Lesson 04, the depth camera: its scene, its faults one by one, figures and panel."""
-
-# ruff: noqa: I001 (short lines)
-from course_lib.lessons.kit.opengl import vtk
-from course_lib.lessons.lesson_04.figures import PANELS, faults_panel, idea_figure, phase_figure
-from course_lib.lessons.lesson_04.figures import SCENE_ALT, recorded_figure, two_surfaces_figure
-from course_lib.lessons.lesson_04.time_of_flight import capture, kinds_of, on_a_surface, returns
-from course_lib.lessons.lesson_04.time_of_flight import true_depths, wall_frames

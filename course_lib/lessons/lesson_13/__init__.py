@@ -1,9 +1,0 @@
-"""Lesson 13, matching two spheres: one object of the upper panorama, its band and its matches in the lower one."""
-
-# ruff: noqa: I001 (short lines)
-from course_lib.lessons.kit.panorama_features import scene
-from course_lib.lessons.kit.room_photographs import pair_of
-from course_lib.lessons.lesson_13.figures import PANELS, counts_figure, half_circle, idea_figure
-from course_lib.lessons.lesson_13.figures import matching_panel, upright_plane
-from course_lib.lessons.lesson_13.matching import PLACES, WAYS, matches_when_turned, negative_scene, object_names
-from course_lib.lessons.lesson_13.matching import plain_object, score, turned_scene

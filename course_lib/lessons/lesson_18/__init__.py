@@ -1,5 +1,0 @@
-"""Lesson 18, similar sofas: poses of two matches, what speaks for each, how sure, and when to say nothing."""
-
-from course_lib.lessons.kit.room_observations import room_scenes
-from course_lib.lessons.kit.room_photographs import room_map
-from course_lib.lessons.lesson_18.panel import PANELS, hypotheses_panel

@@ -1,4 +1,0 @@
-"""Project P2: from the boxes of two images to a pose."""
-
-from course_lib.lessons.project_2.figures import boxes_figure
-from course_lib.lessons.project_2.rooms import rooms_of

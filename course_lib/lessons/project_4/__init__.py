@@ -1,3 +1,0 @@
-"""Project P4, an unknown camera from raw frames to a report: its sessions, its stages, and what it is measured by."""
-
-from course_lib.lessons.project_4.sessions import REPEAT, room_figure, session

@@ -1,0 +1,13 @@
+"""What surrounds the two methods: lessons, commands, experiments, and a teacher's tools.
+
+cli, commands            `python -m courseware`, normally reached through `python3 course.py`
+answers                  closed: solutions, inputs, known mistakes, the projects' hidden seeds and rivals
+classroom                handing out and grading
+lessons                  what only the notebooks use: a folder for each lesson, and kit/, which they share
+plots                    figures that commands and lessons share
+experiments              both papers' tables, as functions of a seed
+simulation               the places that data/ was made from
+paths, run_folder        where the data and the lessons lie; where a command keeps its results
+
+A package imports only packages below it, and all of them may import `course_lib`, which never imports this one.
+"""

@@ -1,0 +1,1 @@
+"""The commands of course.py, one module each; courseware.cli holds the table."""

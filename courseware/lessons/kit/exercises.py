@@ -1,0 +1,217 @@
+"""Exercises: `check("03.1", function)` says at once: not attempted, right, or wrong with a hint.
+
+An `Exercise` has a solution, a generator of inputs, and common mistakes, each an edit of the solution with a hint. A
+student's function runs on special cases and on random inputs, and its values are compared with the solution's. If they
+differ, they are compared with the values of every known mistake. The student never sees the inputs. The exercises of
+lesson NN are the list `EXERCISES` in `courseware/answers/lesson_NN.py`.
+"""
+
+import copy
+import dis
+import functools
+import importlib
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from courseware.lessons.kit.attempt import TIME_LIMIT, attempt
+from courseware.lessons.kit.hints import MISSING_RETURN, hint, kind_of, known_mistake
+from courseware.lessons.kit.mistakes import Mistake, read_mistakes
+from courseware.lessons.kit.show_progress import update_page
+from courseware.lessons.kit.student_record import record_check, record_folder
+from courseware.lessons.kit.values import agree, agree_all
+
+# Random inputs per check. A case that one input in five has is missed in one of 200 checks only: 0.8^24 = 0.005.
+N_INPUTS = 24
+PACKAGES = {"lesson": "", "foundation": "F", "project": "P"}  # a package's kind -> the letter of its number
+ANSWERS = Path(__file__).parents[2] / "answers"
+MAX_SHOWN = 1000  # characters of a function's printed text; only the first call's text is shown
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """One exercise.
+
+    number: such as "03.1". solution: the right function; the notebook's solution is made of its text. inputs: makes one
+    tuple of arguments from a `numpy.random.Generator`. level: how hard it is. cases: like `inputs`, but each runs once
+    in every check. They are special cases (a seam, a mirror image, empty input, equal values) with a name in words,
+    which a hint may tell: `{"one point": lambda rng: (np.zeros((1, 2)),)}`. mistakes: about nine edits of the solution
+    with their hints (`kit.mistakes`). functions: function -> hint, for mistakes that are no edit. tolerance: absolute
+    and relative, as in `numpy.allclose`. others: other functions that the task allows, for example another estimator.
+    verify: for tasks with many right answers. `verify(arguments, answer)` returns a sentence that says what is wrong,
+    or None. It replaces the comparison with the solution.
+    """
+
+    number: str
+    solution: Callable
+    inputs: Callable[[np.random.Generator], tuple]
+    level: Literal["warm-up", "core", "challenge"] = "core"
+    cases: dict[str, Callable[[np.random.Generator], tuple]] = field(default_factory=dict)
+    mistakes: str = ""
+    functions: dict[Callable, str] = field(default_factory=dict)
+    tolerance: float = 1e-6
+    others: Sequence[Callable] = ()
+    verify: Callable[[tuple, object], str | None] | None = None
+
+    def draw(self, rng: np.random.Generator) -> list[tuple]:
+        """Return the arguments of every call of one check: the cases, then `N_INPUTS` random inputs."""
+        return [make(rng) for make in (*self.cases.values(), *[self.inputs] * N_INPUTS)]
+
+    @functools.cached_property
+    def known(self) -> tuple[Mistake, ...]:
+        """Return the exercise's own mistakes: its edits, then its functions."""
+        others = (Mistake((function,), hint) for function, hint in self.functions.items())
+        return (*read_mistakes(self.solution, self.mistakes), *others)
+
+
+class Verdict(NamedTuple):
+    """The result of a check: its status, the message, and the text that the function `printed` in its first call."""
+
+    status: Literal["not attempted", "right", "wrong"]
+    message: str
+    printed: str = ""
+
+
+SIGNS = {"right": ("\u2713", 32), "wrong": ("\u2717", 31)}  # and their colours, by number (ANSI)
+
+NOT_ATTEMPTED = Verdict("not attempted", "not attempted yet. Replace the `...` above, then run both cells.")
+
+
+class UnknownExerciseError(LookupError):
+    """No exercise has this number."""
+
+
+def check(number: str, function: Callable) -> None:
+    """Print whether `function` solves exercise `number`: not attempted, right, or not yet with a hint."""
+    verdict = judge(find_exercise(number), function)
+    said, tries = "", 0
+    if record_folder() is not None:
+        try:
+            said, tries = record_check(number, verdict.status)
+        except OSError as error:
+            said = f"not kept: {error}"
+    show_printed(verdict.printed)
+    print(f"{number}: {signed(verdict)}" + (f" (try {tries})" if tries else ""))
+    if said:
+        print(f"({said})")
+    update_page()
+
+
+def signed(verdict: Verdict) -> str:
+    """Return a verdict's message. In a notebook, an answer has its sign, in a colour of JupyterLab's theme."""
+    if verdict.status not in SIGNS or not type(sys.stdout).__module__.startswith("ipykernel"):
+        return verdict.message
+    sign, colour = SIGNS[verdict.status]
+    first, stop, rest = verdict.message.partition(".")
+    return f"\x1b[1;{colour}m{sign} {first}\x1b[0m{stop}{rest}"
+
+
+def show_printed(text: str) -> None:
+    """Print the text that a student's function printed, if there is any."""
+    if text:
+        print(f"(your function prints) {text[:MAX_SHOWN].rstrip()}")
+
+
+def find_exercise(number: str) -> Exercise:
+    """Return the exercise of this number. Raises `UnknownExerciseError`, which lists all numbers."""
+    lesson = str(number).partition(".")[0]
+    for exercise in lesson_exercises(lesson):
+        if exercise.number == number:
+            return exercise
+    known = [exercise.number for name in lesson_numbers() for exercise in lesson_exercises(name)]
+    raise UnknownExerciseError(f"there is no exercise {number!r}; there are {', '.join(known)}")
+
+
+def lesson_numbers() -> list[str]:
+    """Return the numbers ("03") of the lessons with exercises, and the names of foundations ("F1") and projects."""
+    names = [path.stem.split("_") for path in ANSWERS.glob("*_*.py")]
+    return sorted(PACKAGES[name[0]] + name[1] for name in names if len(name) == 2)
+
+
+def package_name(number: str) -> str:
+    """Return the folder's name of a lesson ("03": lesson_03), foundation ("F1": foundation_1) or project ("P1")."""
+    kind = next((kind for kind, letter in PACKAGES.items() if letter and number.startswith(letter)), "lesson")
+    return f"{kind}_{number.removeprefix(PACKAGES[kind])}"
+
+
+def lesson_exercises(lesson: str) -> tuple[Exercise, ...]:
+    """Return the exercises of lesson "03" or foundation "F1", or the stages of "P1". Without a file of them, ()."""
+    if lesson not in lesson_numbers():
+        return ()
+    return tuple(importlib.import_module(f"courseware.answers.{package_name(lesson)}").EXERCISES)
+
+
+def judge(exercise: Exercise, function: Callable, seed: int = 0, seconds: float = TIME_LIMIT) -> Verdict:
+    """Run `function` on inputs drawn with `seed` and return the verdict. seconds: time limit of one call."""
+    if not callable(function):
+        return _wrong(f"Give the function itself, without calling it; this is a {kind_of(function)}.")
+    if is_stub(function):
+        return NOT_ATTEMPTED
+    arguments = exercise.draw(np.random.default_rng(seed))
+    answers, printed = [], ""
+    for index, given in enumerate(arguments):
+        call = attempt(function, used := copy.deepcopy(given), seconds)
+        printed = printed if index else call.printed
+        if call.failure is not None:
+            return _wrong(f"Your function {call.failure}", printed)
+        if call.value is ...:
+            return NOT_ATTEMPTED
+        if not same_values(used, given):
+            return _wrong("Your function changes the array it was given: work on a new one.", printed)
+        answers.append(call.value)
+    sentence = fault(exercise, arguments, answers)
+    return Verdict("right", "right.", printed) if sentence is None else _wrong(sentence, printed)
+
+
+def right_on(exercise: Exercise, arguments: list[tuple], answers: list) -> list[bool]:
+    """Return for each input whether the answer is right, so that a partly right function gets part of the points.
+
+    All answers are compared with one function: the solution, or the function of `exercise.others` that agrees with
+    more of them. An answer of None is wrong. The arguments are not changed.
+    """
+    pairs = list(zip(arguments, answers, strict=True))
+    if exercise.verify is not None:
+        return [a is not None and exercise.verify(copy.deepcopy(given), a) is None for given, a in pairs]
+    allowed = (exercise.solution, *exercise.others)
+    found = [[agree(a, f(*copy.deepcopy(given)), exercise.tolerance) for given, a in pairs] for f in allowed]
+    return max(found, key=sum)
+
+
+def fault(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
+    """Return a sentence about a fault in the answers, or None. It shows neither inputs nor right values."""
+    if exercise.verify is not None:
+        for given, answer in zip(arguments, answers, strict=True):
+            if answer is None:
+                return MISSING_RETURN
+            if (sentence := exercise.verify(copy.deepcopy(given), answer)) is not None:
+                return known_mistake(exercise, arguments, answers) or sentence
+        return None
+    for allowed in (exercise.solution, *exercise.others):
+        values = [allowed(*copy.deepcopy(given)) for given in arguments]
+        if agree_all(answers, values, exercise.tolerance):
+            return None
+    return hint(exercise, arguments, answers)
+
+
+def is_stub(function: Callable) -> bool:
+    """Return whether the body is still only a docstring and `...`, so that its bytecode only returns None."""
+    if not hasattr(function, "__code__"):
+        return False
+    idle = {"RESUME", "NOP", "LOAD_CONST", "RETURN_CONST", "RETURN_VALUE", "COPY_FREE_VARS"}
+    instructions = list(dis.get_instructions(function))
+    constants = [i.argval for i in instructions if i.opname in ("LOAD_CONST", "RETURN_CONST")]
+    return all(i.opname in idle for i in instructions) and constants == [None]
+
+
+def same_values(given: tuple, kept: tuple) -> bool:
+    """Return whether the arguments after a call equal those before it."""
+    pairs = zip(given, kept, strict=True)
+    return all(np.array_equal(g, k, equal_nan=np.asarray(k).dtype.kind == "f") for g, k in pairs)
+
+
+def _wrong(sentence: str, printed: str = "") -> Verdict:
+    return Verdict("wrong", f"not yet. {sentence}", printed)
