@@ -103,6 +103,14 @@ class DepthCamera:
         cx, cy = (self.cx + 0.5) * scale_x - 0.5, (self.cy + 0.5) * scale_y - 0.5
         return DepthCamera(width, height, self.fx * scale_x, self.fy * scale_y, cx, cy, self.near, self.far)
 
+    def every(self, k: int) -> DepthCamera:
+        """Return the camera of every k-th row and column of its images, from pixel (0, 0) on: u / k, v / k.
+
+        The pixels that are left keep their rays; `resized` gives each pixel a ray of its own.
+        """
+        lens = {name: getattr(self, name) / k for name in ("fx", "fy", "cx", "cy")}
+        return dataclasses.replace(self, width=-(-self.width // k), height=-(-self.height // k), **lens)
+
     @property
     def nearest(self) -> float:
         """The least depth in metres that counts as seen: near, less what rounding may take from a surface on it."""

@@ -98,8 +98,7 @@ def _system(
     """Return the normal equations `(9, 9)` and `(9,)` of a pose and c, times the image's scale. Every k-th pixel."""
     k = max(1, round(np.sqrt(measured.size / PIXELS)))
     measured, image = (np.asarray(one, dtype=np.float64)[::k, ::k] for one in (measured, image))
-    (height, width), lens = measured.shape, [value / k for value in (camera.fx, camera.fy, camera.cx, camera.cy)]
-    seen = DepthCamera(width, height, *lens, camera.near, camera.far)
+    seen = camera.every(k)
     p = seen.points(measured)
     (q,), (n,) = surface_normals(image[None], seen)
     r = np.sum(n * (p - q), axis=-1)

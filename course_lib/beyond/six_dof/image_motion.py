@@ -20,6 +20,7 @@ from course_lib.beyond.six_dof.covariance import PREDICTED, RIVAL_SCALE, SCALE, 
 from course_lib.beyond.six_dof.poses import distinct, local, retract
 from course_lib.beyond.six_dof.prediction import MeasuredMotion, Rival
 from course_lib.beyond.six_dof.refinement import NormalEquations, solve, surface_normals
+from course_lib.beyond.six_dof.schedule import COARSE, MIDDLE
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.compiled import compiled
 
@@ -52,17 +53,20 @@ class View(NamedTuple):
     def of(cls, depth: np.ndarray, camera: DepthCamera, pixels: int) -> "View":
         """Return the view of every k-th row and column of a depth image `(H, W)`, so that about `pixels` measure.
 
-        Their rays stay what they were: u / k, v / k. An image of another size, in which a pixel has the depth of its
-        neighbour's ray, has the same errors at the same pixels wherever the camera is: it would stand still.
+        The rays of these pixels stay as they were. In `Level`'s images a pixel has the depth of a neighbour's ray. Such
+        errors are the same at the same pixels wherever the camera is, so the camera would seem to stand still.
         """
         with np.errstate(invalid="ignore"):
             measured = np.where((depth > camera.near) & (depth < camera.far), depth, np.nan)
         k = max(1, round(np.sqrt(np.isfinite(measured).sum() / pixels)))
-        thinned = measured[::k, ::k]
-        (height, width), lens = thinned.shape, [value / k for value in (camera.fx, camera.fy, camera.cx, camera.cy)]
-        camera = DepthCamera(width, height, *lens, camera.near, camera.far)
-        (points,), (normals,) = surface_normals(thinned[None].astype(np.float64), camera)
+        camera = camera.every(k)
+        (points,), (normals,) = surface_normals(measured[None, ::k, ::k].astype(np.float64), camera)
         return cls(camera, points, normals)
+
+
+def views_of(depth: np.ndarray, camera: DepthCamera) -> list[View]:
+    """Return the coarse and the finer view of a depth image `(H, W)`, as `image_motion` takes them."""
+    return [View.of(depth, camera, pixels) for pixels in (COARSE, MIDDLE)]
 
 
 def paired(before: View, points: np.ndarray, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""Six degrees of freedom, which paper 1 leaves for the future (section 5): its filter, annealed and refined.
+"""Track a depth camera in six degrees of freedom, which paper 1 leaves for the future (section 5).
 
     localizer = AnnealedLocalizer(renderer, seed=0)
     localizer.initialize(state0)
@@ -8,17 +8,16 @@
 A frame goes through the paper's steps several times, each time closer:
 
     measure    the motion since the last image, from both images (image_motion.py)
-    predict    draw particles about where the camera may be, as wide as it has been moving (prediction.py)
-    anneal     weigh them on coarse images, gently, so that enough survive (uncertainty.py); resample; with less noise
-    refine     take the best that differ (poses.py) and refine them by Gauss-Newton on finer and finer images
-               (refinement.py, schedule.py)
-    doubt      if the best agrees less with the map than frames did before, look once more with a wider cloud
-    fuse       believe the prediction along what the image does not show (covariance.py), or all of it where the map
-               does not hold the view
+    predict    where the camera may be, and how far from there, by its motions so far (prediction.py)
+    search     anneal particles on coarse images, and refine the best of them on finer ones (search.py)
+    doubt      if the best pose agrees with the map less than usual, search once more in a wider cloud
+    decide     keep the prediction along what the image does not show (covariance.py), or all of it where the map does
+               not hold the view
     judge      say whether the pose is known (being_lost.py), and whether the intrinsics fit (calibration.py)
 
-Particles are camera-to-world matrices `(N, 4, 4)` here, optical convention, and their noise is drawn in the tangent
-space, which has no gimbal lock. Estimates are states, as `MonteCarloLocalizer` gives them.
+`step` computes all this first and then changes the filter's state once. Particles are camera-to-world matrices
+`(N, 4, 4)` here, optical convention. Their noise is drawn in the tangent space, which has no gimbal lock. Estimates
+are states, as `MonteCarloLocalizer` gives them.
 """
 
 import warnings
@@ -46,8 +45,8 @@ from course_lib.beyond.six_dof.covariance import (
     predicted_covariance,
     with_rivals,
 )
-from course_lib.beyond.six_dof.image_motion import View, image_motion
-from course_lib.beyond.six_dof.poses import distinct, local, optical_increment, retract
+from course_lib.beyond.six_dof.image_motion import View, image_motion, views_of
+from course_lib.beyond.six_dof.poses import local, optical_increment, retract
 from course_lib.beyond.six_dof.prediction import (
     MAX_SPREAD,
     START_SPREAD,
@@ -56,75 +55,60 @@ from course_lib.beyond.six_dof.prediction import (
     MotionPrediction,
     Rival,
 )
-from course_lib.beyond.six_dof.schedule import (
-    COARSE,
-    LAYERS,
-    MIDDLE,
-    SECOND_LOOK,
-    STEPS,
-    SURE_LAYERS,
-    Layer,
-    Step,
-    pyramid,
-)
+from course_lib.beyond.six_dof.schedule import LAYERS, SECOND_LOOK, STEPS, SURE_LAYERS, Layer, Step, pyramid
+from course_lib.beyond.six_dof.search import Cloud, Found, search
 from course_lib.depth_mcl.likelihood import checked_image, valid_pixels
 from course_lib.depth_mcl.localizer import NoMeasurementWarning, checked_start
 from course_lib.depth_mcl.motion import TANGENT_SPACE
 from course_lib.depth_mcl.one_at_a_time import one_at_a_time
-from course_lib.depth_mcl.particle_filter import resample
 from course_lib.depth_mcl.uncertainty import Tempered, temper
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 
-# All chosen on the kitchen and the shipped corridor; SEEN, IMAGE_FIRST and those of rivals on walks through rooms, too,
-# seeds 10,041 to 10,066, and on a HoloLens's rooms.
-APART = 0.2  # of the prediction's spread: two particles nearer than this are one hypothesis
-DISTINCT = np.array([0.02, np.deg2rad(1.0)])  # metres, radians: the same for two refined poses
+# Chosen on the kitchen and the shipped corridor; SEEN and IMAGE_FIRST also on walks through rooms, seeds 10,041 to
+# 10,066, and on a HoloLens's rooms.
 SURE = np.array([0.06, np.deg2rad(3.0)])  # metres, radians: a cloud so small needs few particles
-NOTHING_BEHIND = 0.01  # the same share, up to which a pose where the measured motion leads needs no second look
-CLEAR = 0.05  # share of pixels measured behind the map up to which a pose that fits little of the map may be known
-SEEN = 0.06  # of raw score: what moving a pose along directions that the image does not show may cost
-RIVAL_WITHIN = 0.06  # of raw score: a pose that fits less is no rival of the best
-RIVAL_APART = np.array([0.15, np.deg2rad(10.0)])  # metres, radians
+NOTHING_BEHIND = 0.01  # share of pixels behind the map: with at most this, a pose that the motion confirms is settled
+CLEAR = 0.05  # share of pixels behind the map: with more, the camera may as well be where it was predicted
+SEEN = 0.06  # of raw score: more than this no move along directions that the image does not show may cost
 IMAGE_FIRST = 4  # times the image's information moves the pose: motions' errors add up, the map's errors do not
-CHECKED = 3  # of so many tracked frames one tells about the intrinsics, to save time
+CHECKED = 3  # every third tracked frame checks the intrinsics, which saves time
 
 
 class AnnealedEstimate(NamedTuple):
-    """What one frame gave: as `Estimate`, and how it was reached."""
+    """The estimate of one frame: `Estimate`'s fields, and how it was reached."""
 
     state: np.ndarray  # `(6,)` the best refined pose.
-    covariance: np.ndarray  # `(6, 6)` of the last particles, metres in world axes, radians in body axes
-    score: float  # raw score of the refined pose: eq. (8) as a mean over pixels of the finest image
+    covariance: np.ndarray  # `(6, 6)` of the last particles, metres in world axes, radians in body axes.
+    score: float  # Raw score of the refined pose: eq. (8) as a mean over pixels of the finest image.
     ess: float  # Effective sample size of the last layer's weights.
     particles: np.ndarray  # `(N, 6)` of the last layer.
     weights: np.ndarray  # `(N,)` of these particles.
-    status: TrackStatus | Literal["no measurement"]  # what being_lost.py says of the state
-    error_covariance: np.ndarray  # `(6, 6)`, the same units and axes: of the error to expect while "tracked"
+    status: TrackStatus | Literal["no measurement"]  # Whether the state is known, by being_lost.py.
+    error_covariance: np.ndarray  # `(6, 6)`, same units and axes: of the error to expect while "tracked".
     agreement: Agreement  # How the measured image agrees with the map as seen from the state.
     layers: tuple[Tempered, ...]  # Weights, sharpness and effective sample size of every layer, in order.
-    renders: int  # How many images were drawn.
-    calibration: Calibration  # What the tracked images so far tell of the camera's intrinsics.
+    renders: int  # How many images were rendered for this frame.
+    calibration: Calibration  # The camera's intrinsics by the tracked images so far.
 
 
-class _Found(NamedTuple):
-    """What one look at a frame gave."""
+class Decision(NamedTuple):
+    """The pose that one frame leads to; `AnnealedLocalizer.step` applies it to the filter's state."""
 
-    pose: np.ndarray
-    score: float
-    agreement: Agreement
-    particles: np.ndarray
-    layers: tuple[Tempered, ...]
-    rivals: tuple[Rival, ...] = ()
+    found: Found  # With the pose that is reported.
+    covariance: np.ndarray  # `(6, 6)` of its error, along and about the camera's axes.
+    image_says: TrackStatus  # The status by this frame's own image.
+    is_found: bool  # Whether the camera is at this pose: else it may also be elsewhere.
+    shows_all: bool  # Whether the image shows all six directions.
 
 
 class AnnealedLocalizer:
-    """Annealed particle filter with Gauss-Newton refinement, for a depth camera that moves freely.
+    """Track a depth camera that moves freely, by an annealed particle filter with Gauss-Newton refinement.
 
     n_particles: of a layer whose share is 1. seed: of all draws. sure_layers: where the motion was measured to within
-    `SURE`. second_look: layers after a doubtful look (empty: none). steps: of the refinement (empty: the best
-    particle). rivals: how many other poses are kept. fuse: joins prediction and image. prediction: made from the first
-    pose. image_motion: whether two images tell the motion. Raises `ValueError` for bad numbers, or no layer.
+    `SURE`. second_look: layers after a doubtful search (empty: none). steps: of the refinement (empty: the best
+    particle). rivals: how many other poses are kept. fuse: joins prediction and image. prediction: called with the
+    first pose. image_motion: whether two images measure the motion. Raises `ValueError` for bad numbers, or no layer.
     """
 
     def __init__(
@@ -159,14 +143,15 @@ class AnnealedLocalizer:
         self._prediction: MotionPrediction | None = None
         self._judge = TrackJudge()
         self._calibration, self._tracked = CalibrationCheck(), 0  # of all frames, because a camera keeps its intrinsics
-        self._pose: np.ndarray | None = None  # the last estimate, and how far off it may be
-        self._covariance: np.ndarray | None = None
+        self._pose: np.ndarray | None = None  # the last estimate
+        self._covariance: np.ndarray | None = None  # of its error; None before the first image
         self._views: list[View] | None = None  # of the last image
 
     @one_at_a_time
     def initialize(self, state0: np.ndarray) -> None:
-        """Say where the camera `(6,)` is before the first frame, to within `START_SPREAD`."""
-        self._prediction = self._new_prediction(optical_pose(checked_start(state0, self.renderer.scene_map)))
+        """Start at the state `(6,)`, which is right to within `START_SPREAD`."""
+        self._pose = optical_pose(checked_start(state0, self.renderer.scene_map))
+        self._prediction = self._new_prediction(self._pose)
         self._judge = TrackJudge()
         self._covariance = self._views = None
 
@@ -186,193 +171,156 @@ class AnnealedLocalizer:
         measured = None if increment is None else MeasuredMotion.of_odometer(optical_increment(increment))
         for level in self.levels:
             level.measure(depth)
-        if not valid_pixels(self.levels[-1].measured).any():
-            return self._not_measured(measured)
-        measured = self._measured_motion(depth, measured)
-        found, spread = self._look_twice(prediction.spread(measured), measured)
-        image_says = self._judge.judge_image(found.agreement)
-        found, image_says = self._fuse(found, image_says, spread, measured)
-        status = self._judge.judge(image_says, found.agreement, self._covariance, bool(found.rivals))
-        return self._estimate(found, status, self._calibrated(found.pose, status))
+        if valid_pixels(self.levels[-1].measured).any():
+            views = views_of(depth, self.renderer.camera)
+            measured = self._measured_motion(views, measured)
+            found, cloud = self._look_twice(Cloud(prediction, prediction.spread(measured), measured))
+            decision = self._decide(found, cloud)
+            found, covariance = decision.found, decision.covariance
+            status = self._judge.judge(decision.image_says, found.agreement, covariance, bool(found.rivals))
+            error_covariance = self._calibrated(covariance, found.pose, status)
+        else:
+            warnings.warn(
+                "this frame holds no measurement between the camera's near and far planes; the pose is predicted only",
+                NoMeasurementWarning,
+                stacklevel=3,
+            )
+            # Without an odometer the next image measures the motion since the image before this frame.
+            views = self._views if measured is None else None
+            cloud = Cloud(prediction, prediction.spread(measured), measured)
+            decision = self._predicted_only(cloud)
+            found, covariance = decision.found, decision.covariance
+            status, error_covariance = "no measurement", covariance
+        if decision.is_found:
+            prediction.found(found.pose, decision.shows_all, found.rivals)
+        else:
+            prediction.not_found(found.pose, cloud.spread, found.rivals, measured)
+        self._pose, self._covariance, self._views = found.pose, covariance, views
+        return self._estimate(found, status, error_covariance)
 
-    def _calibrated(self, pose: np.ndarray, status: TrackStatus) -> np.ndarray:
+    def _measured_motion(self, views: list[View], told: MeasuredMotion | None) -> MeasuredMotion | None:
+        """Return the motion since the last image, from both images and the odometer if there is one."""
+        if self._views is None or not self.image_motion:
+            return told
+        if told is not None:
+            return image_motion(self._views, views, told.motion, self._prediction.spread(told)) or told
+        return image_motion(self._views, views, self._prediction.motion, self._prediction.guess_spread())
+
+    def _look_twice(self, expected: Cloud) -> tuple[Found, Cloud]:
+        """Return the best pose and its cloud; search a wider cloud, too, if that pose agrees less than usual."""
+        not_known = 0.0 if self._covariance is None else np.sqrt(np.diag(self._covariance))
+        spread = np.minimum(np.hypot(expected.spread, not_known), np.repeat(MAX_SPREAD, 3))
+        is_sure = expected.measured is not None and (spread <= np.repeat(SURE, 3)).all()
+        found = self._look(expected._replace(spread=spread), self.sure_layers if is_sure else self.layers)
+        is_settled = found.agreement.through <= NOTHING_BEHIND and self._is_confirmed(found, expected)
+        if self.second_look and self._judge.doubts(found.agreement) and not is_settled:
+            wider = expected._replace(spread=np.maximum(WIDER * spread, np.repeat(START_SPREAD, 3)))
+            again = self._look(wider, self.second_look)
+            if again.score > found.score:
+                return again, wider
+        return found, expected
+
+    def _look(self, cloud: Cloud, layers: tuple[Layer, ...]) -> Found:
+        return search(
+            self.levels, cloud, layers, self.steps, self.rng, n_particles=self.n_particles, n_rivals=self.rivals
+        )
+
+    def _is_confirmed(self, found: Found, cloud: Cloud) -> bool:
+        """Return whether a pose that fits the map is also where the measured motion leads."""
+        if cloud.measured is None or self._covariance is None or judge_refined(found.agreement) != "tracked":
+            return False
+        predicted, covariance = self._predicted(found.pose, cloud)
+        return is_known(covariance) and is_near(local(predicted, found.pose), covariance)
+
+    def _predicted(self, pose: np.ndarray, cloud: Cloud) -> tuple[np.ndarray, np.ndarray]:
+        """Return the predicted pose `(4, 4)` that lies nearest to `pose`, and the covariance `(6, 6)` of its error."""
+        before, predicted = cloud.prediction.origin(pose, cloud.spread, cloud.measured)
+        return predicted, self._predicted_covariance(local(before, predicted), cloud)
+
+    def _predicted_covariance(self, motion: np.ndarray, cloud: Cloud) -> np.ndarray:
+        """Return the covariance `(6, 6)` after a motion `(6,)`. At the first image it is as wide as the cloud."""
+        if self._covariance is None:
+            return np.diag(cloud.spread**2)
+        measured = cloud.measured
+        noise = np.diag((PREDICTED * cloud.spread) ** 2) if measured is None else measured.covariance
+        return predicted_covariance(self._covariance, motion, noise)
+
+    def _decide(self, found: Found, cloud: Cloud) -> Decision:
+        """Join the pose that was found and the prediction.
+
+        Along what the image does not show, the pose moves back to the prediction. If the image does not fit the map, as
+        beyond the map's edge, the measured motion carries the pose, as long as it is known, and it is doubtful.
+        """
+        _, middle, fine = self.levels
+        predicted, covariance = self._predicted(found.pose, cloud)
+        information = pose_information(middle.measured, middle.draw(found.pose[None])[0], middle.renderer.camera)
+        narrowed, _ = self.fuse(covariance, information)
+        image_says = self._judge.judge_image(found.agreement)
+        if image_says == "tracked" or self._is_confirmed(found, cloud):
+            _, gain = self.fuse(covariance, IMAGE_FIRST * information)
+            apart = local(predicted, found.pose)
+            pose = retract(predicted, gain @ apart)
+            is_surprising = cloud.measured is not None and not is_near(apart, covariance)
+            lost_score = float(fine.score(fine.draw(pose[None]))[0]) - found.score
+            others = [*found.rivals, Rival(predicted, 0.0)] if is_surprising else list(found.rivals)
+            if is_surprising or lost_score < -SEEN:
+                others.append(Rival(pose, lost_score))
+                pose = found.pose
+            shows_all = bool(np.linalg.matrix_rank(information, hermitian=True) == 6)
+            covariance = with_rivals(narrowed, pose, others)
+            return Decision(found._replace(pose=pose), covariance, image_says, True, shows_all)
+        fits = judge_refined(found.agreement) == "tracked"
+        if cloud.measured is not None and not fits and is_known(covariance):
+            pose = retract(self._pose, cloud.measured.motion)
+            agrees = agreement(fine.measured, fine.draw(pose[None])[0])
+            if not agrees.contradicts:
+                carried = found._replace(pose=pose, agreement=agrees, rivals=())
+                return Decision(carried, covariance, "doubtful", True, False)
+        if fits and found.agreement.through > CLEAR:
+            narrowed = with_rivals(narrowed, found.pose, [Rival(predicted, 0.0)])
+        return Decision(found, narrowed if fits else covariance, image_says, False, False)
+
+    def _predicted_only(self, cloud: Cloud) -> Decision:
+        """Return the prediction alone, because the image shows nothing."""
+        prediction, spread, measured = cloud
+        particles = prediction.draw(self.n_particles, spread, self.rng, measured)
+        pose = prediction.pose if measured is None else retract(prediction.pose, measured.motion)
+        covariance = self._predicted_covariance(local(prediction.pose, pose), cloud)
+        layers = (temper(np.zeros(len(particles)), len(particles)),)
+        found = Found(pose, np.nan, NOTHING_MEASURED, particles, layers, ())
+        return Decision(found, covariance, "doubtful", False, False)
+
+    def _calibrated(self, covariance: np.ndarray, pose: np.ndarray, status: TrackStatus) -> np.ndarray:
         """Return the covariance `(6, 6)`, wider where the intrinsics are doubted; check them with some tracked frames.
 
         The wider covariance is not kept, because this error is the same in the next frame.
         """
         self._tracked += status == "tracked"
         is_checked = status == "tracked" and self._tracked % CHECKED == 0
-        doubted = self._calibration.estimate().doubted.any()
-        if not (is_checked or doubted):
-            return self._covariance
+        is_doubted = self._calibration.estimate().doubted.any()
+        if not (is_checked or is_doubted):
+            return covariance
         middle = self.levels[1]
         images = middle.measured, middle.draw(pose[None])[0], middle.renderer.camera
         if is_checked:
             self._calibration.add(*images)
-        return self._covariance + self._calibration.pose_covariance(*images) if doubted else self._covariance
+        return covariance + self._calibration.pose_covariance(*images) if is_doubted else covariance
 
-    def _measured_motion(self, depth: np.ndarray, told: MeasuredMotion | None) -> MeasuredMotion | None:
-        """Return the motion since the last image, of both images and what an odometer told; remember this image."""
-        before, self._views = self._views, [View.of(depth, self.renderer.camera, pixels) for pixels in (COARSE, MIDDLE)]
-        if before is None or not self.image_motion:
-            return told
-        if told is not None:
-            return image_motion(before, self._views, told.motion, self._prediction.spread(told)) or told
-        return image_motion(before, self._views, self._prediction.motion, self._prediction.guess_spread())
-
-    def _look_twice(self, spread: np.ndarray, measured: MeasuredMotion | None) -> tuple[_Found, np.ndarray]:
-        """Return the best pose of a cloud, or of a wider one if it agrees less than usual, and its spread."""
-        not_known = 0.0 if self._covariance is None else np.sqrt(np.diag(self._covariance))
-        cloud = np.minimum(np.hypot(spread, not_known), np.repeat(MAX_SPREAD, 3))
-        sure = measured is not None and (cloud <= np.repeat(SURE, 3)).all()
-        found = self._look(self.sure_layers if sure else self.layers, cloud, measured)
-        settled = found.agreement.through <= NOTHING_BEHIND and self._confirmed(found, spread, measured)
-        if self.second_look and self._judge.doubts(found.agreement) and not settled:
-            wider = np.maximum(WIDER * cloud, np.repeat(START_SPREAD, 3))
-            again = self._look(self.second_look, wider, measured)
-            if again.score > found.score:
-                return again, wider
-        return found, spread
-
-    def _confirmed(self, found: _Found, spread: np.ndarray, measured: MeasuredMotion | None) -> bool:
-        """Return whether a pose that fits the map is also where the measured motion leads."""
-        if measured is None or self._covariance is None or judge_refined(found.agreement) != "tracked":
-            return False
-        before, predicted = self._prediction.origin(found.pose, spread, measured)
-        covariance = self._predicted_covariance(local(before, predicted), spread, measured)
-        return is_known(covariance) and is_near(local(predicted, found.pose), covariance)
-
-    def _fuse(
-        self, found: _Found, image_says: TrackStatus, spread: np.ndarray, measured: MeasuredMotion | None
-    ) -> tuple[_Found, TrackStatus]:
-        """Join the pose that was found and the prediction; update covariance and motion.
-
-        Along what the image does not show, the pose moves back to the prediction. If the image does not fit the map, as
-        beyond the map's edge, the pose is carried by the measured motion, as long as it is known, and doubtful.
-        """
-        prediction, (_, middle, fine) = self._prediction, self.levels
-        before, predicted = prediction.origin(found.pose, spread, measured)
-        covariance = self._predicted_covariance(local(before, predicted), spread, measured)
-        information = pose_information(middle.measured, middle.draw(found.pose[None])[0], middle.renderer.camera)
-        narrowed, _ = self.fuse(covariance, information)
-        _, gain = self.fuse(covariance, IMAGE_FIRST * information)
-        fits = judge_refined(found.agreement) == "tracked"
-        apart = local(predicted, found.pose)
-        if image_says == "tracked" or self._confirmed(found, spread, measured):
-            pose = retract(predicted, gain @ apart)
-            surprising = measured is not None and not is_near(apart, covariance)
-            lost_score = float(fine.score(fine.draw(pose[None]))[0]) - found.score
-            others = [*found.rivals, Rival(predicted, 0.0)] if surprising else list(found.rivals)
-            if surprising or lost_score < -SEEN:
-                others.append(Rival(pose, lost_score))
-                pose = found.pose
-            sees_all = np.linalg.matrix_rank(information, hermitian=True) == 6
-            prediction.found(pose, bool(sees_all), found.rivals)
-            self._covariance = with_rivals(narrowed, pose, others)
-            return found._replace(pose=pose), image_says
-        if measured is not None and not fits and is_known(covariance):
-            pose = retract(self._pose, measured.motion)
-            agrees = agreement(fine.measured, fine.draw(pose[None])[0])
-            if not agrees.contradicts:
-                prediction.found(pose, False)
-                self._covariance = covariance
-                return found._replace(pose=pose, agreement=agrees, rivals=()), "doubtful"
-        prediction.not_found(found.pose, spread, found.rivals, measured)
-        if fits and found.agreement.through > CLEAR:  # the camera may as well be where it was predicted
-            narrowed = with_rivals(narrowed, found.pose, [Rival(predicted, 0.0)])
-        self._covariance = narrowed if fits else covariance
-        return found, image_says
-
-    def _predicted_covariance(
-        self, motion: np.ndarray, spread: np.ndarray, measured: MeasuredMotion | None
-    ) -> np.ndarray:
-        """Return the covariance after a motion `(6,)`; at the first image that of the start, as wide as the cloud."""
-        if self._covariance is None:
-            return np.diag(spread**2)
-        noise = np.diag((PREDICTED * spread) ** 2) if measured is None else measured.covariance
-        return predicted_covariance(self._covariance, motion, noise)
-
-    def _look(self, layers: tuple[Layer, ...], spread: np.ndarray, measured: MeasuredMotion | None) -> _Found:
-        """Return the best of the particles that went through the layers and the steps of refinement."""
-
-        def merit(scores: np.ndarray, poses: np.ndarray) -> np.ndarray:
-            return scores + self._prediction.preference(poses, spread, measured)
-
-        drawn, scores, tempered = self._anneal(layers, spread, measured)
-        all_poses, all_scores = np.concatenate(drawn), np.concatenate(scores)
-        first = self.steps[0].hypotheses if self.steps else 1
-        poses = all_poses[distinct(all_poses, merit(all_scores, all_poses), first, APART * spread[[0, 3]])]
-        for k, step in enumerate(self.steps):
-            level = self.levels[step.level]
-            images = level.draw(poses)
-            kept = distinct(poses, merit(level.score(images), poses), step.hypotheses, DISTINCT) if k else slice(None)
-            poses = level.step(poses[kept], images[kept], step.scale)
-        fine = self.levels[-1]
-        images = fine.draw(poses)
-        scores = fine.score(images)
-        merits = merit(scores, poses)
-        best, *others = distinct(poses, merits, 1 + self.rivals, RIVAL_APART)
-        rivals = (Rival(poses[other], float(merits[other] - merits[best])) for other in others)
-        return _Found(
-            poses[best],
-            float(scores[best]),
-            agreement(fine.measured, images[best]),
-            drawn[-1],
-            tempered,
-            tuple(rival for rival in rivals if rival.evidence >= -RIVAL_WITHIN),
-        )
-
-    def _anneal(
-        self, layers: tuple[Layer, ...], spread: np.ndarray, measured: MeasuredMotion | None
-    ) -> tuple[list[np.ndarray], list[np.ndarray], tuple[Tempered, ...]]:
-        """Return particles, their scores and their weights, layer by layer."""
-        coarse = self.levels[0]
-        drawn, scores, tempered = [], [], []
-        for layer in layers:
-            n = max(1, round(layer.particles * self.n_particles))
-            if not drawn:
-                poses = self._prediction.draw(n, layer.spread * spread, self.rng, measured)
-            else:
-                parents = drawn[-1][resample(tempered[-1].weights, self.rng, n=n)]
-                poses = retract(parents, layer.spread * spread * self.rng.standard_normal((n, 6)))
-            drawn.append(poses)
-            scores.append(coarse.score(coarse.draw(poses)))
-            tempered.append(temper(scores[-1], layer.survivors * n))
-        return drawn, scores, tuple(tempered)
-
-    def _not_measured(self, told: MeasuredMotion | None) -> AnnealedEstimate:
-        """Return the prediction alone, because nothing was seen."""
-        warnings.warn(
-            "this frame holds no measurement between the camera's near and far planes; the pose is predicted only",
-            NoMeasurementWarning,
-            stacklevel=4,
-        )
-        spread = self._prediction.spread(told)
-        poses = self._prediction.draw(self.n_particles, spread, self.rng, told)
-        before = self._prediction.pose
-        pose = before if told is None else retract(before, told.motion)
-        self._prediction.not_found(pose, spread, measured=told)
-        self._views = None if told is not None else self._views  # else the next image shows the motion since this one
-        self._covariance = self._predicted_covariance(local(before, pose), spread, told)
-        found = _Found(pose, np.nan, NOTHING_MEASURED, poses, (temper(np.zeros(len(poses)), len(poses)),))
-        return self._estimate(found, "no measurement", self._covariance)
-
-    def _estimate(self, found: _Found, status: str, covariance: np.ndarray) -> AnnealedEstimate:
-        self._pose = found.pose
+    def _estimate(self, found: Found, status: str, error_covariance: np.ndarray) -> AnnealedEstimate:
         state, particles = state_from_optical_pose(found.pose), state_from_optical_pose(found.particles)
-        w = found.layers[-1].weights
+        last = found.layers[-1]
         deviations = self.motion.deviations(particles, state)
         return AnnealedEstimate(
-            state,
-            (w[:, None] * deviations).T @ deviations,
-            found.score,
-            found.layers[-1].ess,
-            particles,
-            w,
-            status,
-            in_world_and_body(covariance, found.pose),
-            found.agreement,
-            found.layers,
-            sum(level.renders for level in self.levels),
-            self._calibration.estimate(),
+            state=state,
+            covariance=(last.weights[:, None] * deviations).T @ deviations,
+            score=found.score,
+            ess=last.ess,
+            particles=particles,
+            weights=last.weights,
+            status=status,
+            error_covariance=in_world_and_body(error_covariance, found.pose),
+            agreement=found.agreement,
+            layers=found.layers,
+            renders=sum(level.renders for level in self.levels),
+            calibration=self._calibration.estimate(),
         )

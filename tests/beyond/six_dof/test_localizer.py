@@ -149,6 +149,25 @@ def test_beyond_the_map_s_edge_images_carry_it_doubtful_and_back(renderer, rng):
     assert {e.status for e in blind[7:11]} == {"lost"}
 
 
+def test_an_odometer_carries_the_first_frame_from_the_given_start_and_from_no_earlier_run(renderer):
+    """The map does not hold the first image: nothing but the increment shows where the camera is."""
+    scene_map = furnished_room()
+    left = scene_map.vertices[scene_map.faces].mean(axis=1)[:, 1] > 0.0
+    inside, edge = np.array([[-1.0, 0.5, -0.5, 0.0, 0.05, yaw] for yaw in (0.6, -0.8)])
+    after = edge + np.array([0.1, 0, 0, 0, 0, -0.05])
+    depth, increment = renderer.render([inside, after]), motion_between(edge, after)
+    with DepthRenderer(SceneMap(scene_map.vertices, scene_map.faces[left]), SMALL) as opened:
+        for earlier in (0, 1):
+            localizer = AnnealedLocalizer(opened, seed=1)
+            if earlier:
+                localizer.initialize(inside)
+                localizer.step(depth[0])
+            localizer.initialize(edge)
+            estimate = localizer.step(depth[1], increment)
+            assert estimate.status == "doubtful"
+            assert (off([estimate], after[None]) < 1e-6).all()
+
+
 def test_before_a_bare_wall_it_soon_says_that_it_does_not_know_where(rng):
     """The covariance grows along the wall only; a pose that has slid on the map's roughness is not called tracked."""
     still = np.zeros((12, 6))
