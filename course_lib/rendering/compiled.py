@@ -1,45 +1,66 @@
-"""Compiling loops: the fast forms of rendering, likelihood and refinement."""
+"""Compile loops: the fast forms of rendering, likelihood and refinement."""
 
 import contextlib
 import logging
 import sys
-from collections.abc import Callable
-from functools import cache
+from collections.abc import Callable, Iterator
 
 from numba import njit
+from numba.core import event
+from numba.core.caching import FunctionCache
 
 
 def compiled(fastmath: bool | set[str] = True) -> Callable[[Callable], Callable]:
-    """Return a decorator: Numba compiles the function at its first call, and threads run it side by side.
+    """Return a decorator: Numba compiles the function at its first call, and threads may run it at the same time.
 
-    Compiled code is kept beside the source or in the user's cache. Where it cannot be, each process compiles anew.
+    Compiled code is kept next to the source or in the user's cache. Where it cannot be, each process compiles again.
     """
 
     def decorate(function: Callable) -> Callable:
-        try:
-            fast = njit(nogil=True, fastmath=fastmath, cache=True)(function)
-        except RuntimeError:  # Numba has no folder to keep code in
-            fast = njit(nogil=True, fastmath=fastmath)(function)
-        load = _or_none(fast._cache.load_overload)
-        fast._cache.load_overload = lambda *signature: load(*signature) or _announce()
-        fast._cache.save_overload = _or_none(fast._cache.save_overload)
+        fast = njit(nogil=True, fastmath=fastmath)(function)
+        with contextlib.suppress(RuntimeError):  # Numba has no folder to keep code in
+            fast._cache = ForgivingCache(function)
         return fast
 
     return decorate
 
 
-@cache  # so that a process says it once
-def _announce() -> None:
-    """Say that compiling begins, on a terminal or to a log (`beyond.warm_up` does it before the first image)."""
-    level = logging.WARNING if sys.stderr.isatty() else logging.INFO
-    logging.getLogger("course_lib").log(level, "compiling loops for this computer, once: this takes some seconds")
+class ForgivingCache(FunctionCache):
+    """Numba's cache of one function on disk. A damaged file counts as none, and where nothing can be written, we go on.
 
+    Numba's own class raises then. Its `Dispatcher.enable_caching` sets `_cache` in the same way, and calls no other
+    method of it during a run (read in Numba 0.68.1).
+    """
 
-def _or_none(step: Callable) -> Callable:
-    """Return a step of Numba's cache that gives None when it fails: a full disk, a damaged file."""
-
-    def tried(*arguments: object) -> object:
+    def load_overload(self, *signature: object) -> object:
+        """Return the compiled code that is kept for a signature, or None."""
         with contextlib.suppress(Exception):
-            return step(*arguments)
+            return super().load_overload(*signature)
 
-    return tried
+    def save_overload(self, *signature_and_code: object) -> None:
+        """Keep compiled code, if possible."""
+        with contextlib.suppress(Exception):
+            super().save_overload(*signature_and_code)
+
+
+@contextlib.contextmanager
+def announced_compiling() -> Iterator[None]:
+    """Within the block, say once that compiling begins: to the user of a terminal as a warning, else to the log."""
+    with event.install_listener("numba:compile", _Announcement()):
+        yield
+
+
+class _Announcement(event.Listener):
+    """Numba's event "numba:compile" begins only where no compiled code was kept."""
+
+    def __init__(self) -> None:
+        self._is_made = False
+
+    def on_start(self, event: object) -> None:
+        if not self._is_made:
+            level = logging.WARNING if sys.stderr.isatty() else logging.INFO
+            logging.getLogger("course_lib").log(level, "compiling loops for this computer: this takes some seconds")
+        self._is_made = True
+
+    def on_end(self, event: object) -> None:
+        """Say nothing: the call that follows shows that compiling has ended."""

@@ -5,8 +5,7 @@ import logging
 
 import pytest
 
-from course_lib.rendering import compiled as module
-from course_lib.rendering.compiled import compiled
+from course_lib.rendering.compiled import announced_compiling, compiled
 
 TWICE = "def twice(x):\n    return 2 * x\n"
 
@@ -26,7 +25,7 @@ def test_without_a_place_for_compiled_code_each_process_compiles_for_itself(tmp_
 
 
 @pytest.mark.parametrize("damage", [b"", b"no pickle"])
-def test_kept_code_that_is_damaged_is_compiled_anew(tmp_path, monkeypatch, damage):
+def test_kept_code_that_is_damaged_is_compiled_again(tmp_path, monkeypatch, damage):
     """As a disk that lost its power leaves a file: with its name, and without what was in it."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     path = tmp_path / "twice.py"
@@ -47,10 +46,10 @@ def test_compiling_is_announced_once_and_loading_is_not(tmp_path, monkeypatch, c
     head = "from course_lib.rendering.compiled import compiled\n\n\n@compiled()\n"
     for name in (f"first_{level}", f"second_{level}"):
         (tmp_path / f"{name}.py").write_text(head + TWICE)
-    module._announce.cache_clear()
     made = [importlib.import_module(path.stem) for path in sorted(tmp_path.glob("*.py"))]
-    assert [one.twice(21) for one in made] == [42, 42]
+    with announced_compiling():
+        assert [one.twice(21) for one in made] == [42, 42]
     assert [record.levelname for record in caplog.records] == [level]
-    module._announce.cache_clear()
-    assert importlib.reload(made[0]).twice(21) == 42
+    with announced_compiling():
+        assert importlib.reload(made[0]).twice(21) == 42
     assert len(caplog.records) == 1
