@@ -24,7 +24,5 @@ from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES, Mo
 from course_lib.depth_mcl.particle_filter import effective_sample_size, initial_particles, resample, weighted_mean_state
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.depth_mcl.sequence_files import SequenceError
-from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
-from course_lib.rendering.scene_map import SceneMap, SceneMapError
-from course_lib.rendering.sensor import depth_image_from_points, subsample_depth
+from course_lib.rendering import DepthCamera, DepthRenderer, SceneMap, depth_image_from_points, subsample_depth
+from course_lib.rendering.errors import OpenGLError, RendererClosedError, SceneMapError

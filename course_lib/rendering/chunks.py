@@ -7,7 +7,7 @@ import numpy as np
 
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.compiled import compiled
-from course_lib.rendering.scene_map import SceneMapError
+from course_lib.rendering.errors import SceneMapError
 
 MAX_EDGE = 32.0  # metres: so long edges OpenGL draws right to half a millimetre, seen from 2 m above
 MAX_CUT_EDGE = 20_000.0  # metres: a longer edge is not cut; it belongs to no building, and `SceneMap.load` refuses it

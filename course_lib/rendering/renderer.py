@@ -18,6 +18,7 @@ import numpy as np
 from course_lib.geometry import as_states, is_rotation, optical_pose
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.chunks import cut_large_triangles
+from course_lib.rendering.errors import OpenGLError, RendererClosedError
 from course_lib.rendering.raster import RasterBackend
 from course_lib.rendering.ray import RayBackend
 from course_lib.rendering.scene_map import SceneMap
@@ -30,14 +31,6 @@ CARDS = ("dri/renderD*", "nvidia[0-9]*", "dxg")
 SOFTWARE = ("llvmpipe", "softpipe", "swrast", "software", "gdi generic", "basic render", "swiftshader")
 
 Backend = Literal["auto", "vtk", "raster", "ray"]
-
-
-class RendererClosedError(RuntimeError):
-    """A renderer was used after it had been closed."""
-
-
-class OpenGLError(RuntimeError):
-    """OpenGL cannot start or draw, or it belongs to the process that this one was forked from."""
 
 
 @cache  # so that a process decides once
@@ -92,17 +85,19 @@ class DepthRenderer:
         if self.backend == "vtk":
             from course_lib.rendering.vtk_backend import VtkBackend  # only here, because it needs OpenGL's libraries
 
-            return VtkBackend(self.drawn, self.camera, self.batch_size)
+            return VtkBackend(self.map_to_draw(), self.camera, self.batch_size)
         if self.backend not in ("raster", "ray"):
             raise ValueError(f"backend must be 'auto', 'vtk', 'raster' or 'ray'; got {self.backend!r}")
-        return {"raster": RasterBackend, "ray": RayBackend}[self.backend](self.drawn, self.camera)
+        return {"raster": RasterBackend, "ray": RayBackend}[self.backend](self.map_to_draw(), self.camera)
 
-    @property
-    def drawn(self) -> SceneMap:
-        """The map that is drawn: with fewer triangles unless `exact`, and with none that is large."""
+    def map_to_draw(self) -> SceneMap:
+        """Return the map that a backend renders: with fewer triangles unless `exact`, and with none that is large.
+
+        The first time in a process this takes up to 16 s for a large map; the user's cache keeps the result.
+        """
         drawn = self.scene_map
         if not self.exact:
-            from course_lib.rendering.simplification import simplified
+            from course_lib.rendering.simplification import simplified  # only here, because it loads VTK
 
             drawn = simplified(drawn)
         vertices, faces = cut_large_triangles(drawn.vertices, drawn.faces)

@@ -16,6 +16,7 @@ import trimesh
 
 from course_lib.files import read_bytes
 from course_lib.geometry import is_rotation, rotation_to_z_up
+from course_lib.rendering.errors import SceneMapError, SceneMapWarning
 
 _MIN_AREA = 1e-16  # square metres: a smaller triangle has no inside that a pixel centre could hit
 MAX_COORDINATE = 2e7  # metres, half the Earth's circumference: no map has its zero farther away
@@ -25,14 +26,6 @@ MAX_BUILDING = 200.0  # metres: a map that is larger in all three directions is 
 _ANCHOR_STEP = 100.0
 
 _CURE = "To leave such triangles out: drop_far=True, or `localize --drop-far`"
-
-
-class SceneMapError(ValueError):
-    """A map that cannot be used: unreadable, empty, or with values that are no geometry."""
-
-
-class SceneMapWarning(UserWarning):
-    """A map that can be used, but its coordinates look like millimetres."""
 
 
 class SceneMap:

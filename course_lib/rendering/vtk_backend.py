@@ -16,7 +16,7 @@ import numpy as np
 
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.chunks import MeshChunks
-from course_lib.rendering.renderer import OpenGLError, RendererClosedError
+from course_lib.rendering.errors import OpenGLError, RendererClosedError
 from course_lib.rendering.scene_map import SceneMap
 
 if sys.platform.startswith("linux"):

@@ -8,8 +8,9 @@ from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.chunks import MAX_EDGE, MeshChunks, cut_large_triangles
+from course_lib.rendering.errors import SceneMapError
 from course_lib.rendering.renderer import DepthRenderer
-from course_lib.rendering.scene_map import SceneMap, SceneMapError
+from course_lib.rendering.scene_map import SceneMap
 from tests.rendering.shapes import OFF_CENTRE, SMALL, random_states, random_triangles
 
 CAMERA = DepthCamera.from_fov(80, 60, 65, 52, near=0.2, far=9.0)

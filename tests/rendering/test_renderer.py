@@ -10,7 +10,8 @@ import pytest
 from course_lib.geometry import optical_pose
 from course_lib.rendering import renderer as renderer_module
 from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError, chosen_backend
+from course_lib.rendering.errors import OpenGLError, RendererClosedError
+from course_lib.rendering.renderer import DepthRenderer, chosen_backend
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.rendering.sensor import depth_image_from_points
 from course_lib.rendering.vtk_backend import VtkBackend, depth_from_buffer

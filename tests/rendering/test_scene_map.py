@@ -9,7 +9,8 @@ import pytest
 import trimesh
 
 from course_lib.geometry import UP_AXES, rotation_to_z_up
-from course_lib.rendering.scene_map import SceneMap, SceneMapError, SceneMapWarning
+from course_lib.rendering.errors import SceneMapError, SceneMapWarning
+from course_lib.rendering.scene_map import SceneMap
 from tests.rendering.shapes import room
 
 TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])

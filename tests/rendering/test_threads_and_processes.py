@@ -8,7 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from course_lib.rendering.renderer import DepthRenderer, OpenGLError, RendererClosedError
+from course_lib.rendering.errors import OpenGLError, RendererClosedError
+from course_lib.rendering.renderer import DepthRenderer
 from tests.rendering.shapes import SMALL, random_states, room, room_depth
 
 PATIENCE_WITH_A_CHILD, PATIENCE = 30.0, 240.0  # seconds that a forked child or a new process takes on no machine

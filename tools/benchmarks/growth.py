@@ -48,7 +48,7 @@ def map_growth(scene: Scene, repeats: int) -> dict[str, object]:
     seconds = step_seconds(scene, renderers, repeats)
     return {
         "triangles": [len(scene_map) for scene_map in maps.values()],
-        "drawn": [len(renderer.drawn) for renderer in renderers.values()],
+        "drawn": [len(renderer.map_to_draw()) for renderer in renderers.values()],
         "growth": float(np.median(seconds["fine", N_PARTICLES] / seconds["usual", N_PARTICLES])),
         "preprocessing_s": preprocessing,
     }

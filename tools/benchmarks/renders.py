@@ -7,7 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from course_lib.geometry import state_from_optical_pose
-from course_lib.rendering.renderer import DepthRenderer, OpenGLError
+from course_lib.rendering.errors import OpenGLError
+from course_lib.rendering.renderer import DepthRenderer
 from tools.benchmarks.measure import corridor
 from tools.benchmarks.waiting import held_mb
 

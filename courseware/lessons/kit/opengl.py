@@ -2,7 +2,8 @@
 
 import functools
 
-from course_lib.rendering.renderer import Backend, OpenGLError
+from course_lib.rendering.errors import OpenGLError
+from course_lib.rendering.renderer import Backend
 
 
 @functools.cache  # so that a kernel says it once
