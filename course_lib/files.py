@@ -1,7 +1,7 @@
-"""Read what a user hands over, with bounds and named errors; write files so that nothing is ever half-written.
+"""Read a user's files with limits and named errors, and write files so that no reader ever sees half of one.
 
-Each reader takes `what` the file is ("depth image"), for the message, and the `error` to raise; a missing file raises
-`missing`, if that is given.
+Each reader takes `what` the file is ("depth image"), for the message, and the `error` that it raises. A missing file
+raises `missing`, if that is given.
 """
 
 import contextlib
@@ -25,7 +25,7 @@ MAX_TEXT = 64 * MEGABYTE  # of a text or JSON file: 500,000 rows of poses are 40
 MAX_BYTES = 2_000 * MEGABYTE  # of any file: a scanned building of 40 million triangles
 MAX_PIXELS = 100_000_000  # of an image: a panorama of 14,000 x 7,000
 MAX_IMAGE = 3 * MAX_PIXELS  # bytes of an image in memory: that panorama in three colours
-MAX_LEVELS = 50  # lists and objects inside each other in JSON; our own formats have four
+MAX_LEVELS = 50  # of lists and objects inside each other in JSON; our own formats have four
 
 Raised = type[Exception]
 
@@ -33,7 +33,7 @@ Raised = type[Exception]
 def read_bytes(
     path: str | Path, what: str, error: Raised, limit: int = MAX_BYTES, missing: Raised | None = None
 ) -> bytes:
-    """Return everything in a file, at most `limit` bytes. A pipe or device, which may never end, is refused."""
+    """Return the content of a file of at most `limit` bytes. A pipe or device is refused, because it may never end."""
     path = Path(path)
     require_file(path, what, missing or error)
     try:
@@ -44,9 +44,9 @@ def read_bytes(
         raise error(f"{what} {path} cannot be read: {reason.strerror}") from reason
 
 
-# Whether something stands at a path. A broken link or a folder is not left out: it is one that cannot be read.
+# Whether there is anything at a path. A broken link and a folder count, because the user meant them to be read.
 is_given = os.path.lexists
-is_file = os.path.isfile  # not where no system would look a name up
+is_file = os.path.isfile  # False, and no error, for a name that no system allows
 
 
 def require_file(path: Path, what: str, error: Raised) -> None:
@@ -55,22 +55,21 @@ def require_file(path: Path, what: str, error: Raised) -> None:
         if path.is_file():
             return
         kind = "is a folder" if path.is_dir() else "is no plain file" if path.exists() else "is missing"
-    except (OSError, ValueError) as reason:  # a name that is too long, or holds a zero byte
+    except (OSError, ValueError) as reason:  # a name that is too long, or contains a zero byte
         raise error(f"{what} {str(path)!r} cannot be opened: {reason}") from reason
     raise error(f"{what} {path} {kind}: give the path of an existing file")
 
 
 def read_text(path: str | Path, what: str, error: Raised, missing: Raised | None = None) -> str:
-    """Return the text of a UTF-8 file, with or without a byte order mark, with the line ends of any system."""
+    """Return the text of a UTF-8 file, without a byte order mark, and with a newline for the line ends of any system."""
     data = read_bytes(path, what, error, MAX_TEXT, missing)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as reason:
         line = data[: reason.start].count(b"\n") + 1
-        told = (
-            f"{what} {path} is not UTF-8 text: byte {data[reason.start]:#04x} in line {line}. Was another file given "
-        )
-        raise error(told + "in its place? If not, save it as UTF-8") from None
+        byte = f"byte {data[reason.start]:#04x} in line {line}"
+        cure = "Was another file given in its place? If not, save it as UTF-8"
+        raise error(f"{what} {path} is not UTF-8 text: {byte}. {cure}") from None
     if "\0" in text:
         line = text[: text.index("\0")].count("\n") + 1
         raise error(f"{what} {path} is not text: a zero byte in line {line}")
@@ -78,14 +77,14 @@ def read_text(path: str | Path, what: str, error: Raised, missing: Raised | None
 
 
 def read_json(path: str | Path, what: str, error: Raised, missing: Raised | None = None) -> object:
-    """Return what a JSON file holds: numbers finite, no name twice in one object, at most `MAX_LEVELS` levels."""
+    """Return the value of a JSON file. Its numbers are finite, its names unique, its levels at most `MAX_LEVELS`."""
     text = read_text(path, what, error, missing)
 
     def refuse(reason: str) -> NoReturn:
         raise error(f"{what} {path} {reason}")
 
     def constant(name: str) -> NoReturn:
-        refuse(f"holds {name}, which is no JSON number; what is not known is written null")
+        refuse(f"holds {name}, which is no JSON number; write null for an unknown value")
 
     def number(digits: str) -> float:
         value = float(digits)
@@ -100,8 +99,8 @@ def read_json(path: str | Path, what: str, error: Raised, missing: Raised | None
             refuse(f"has {twice[0]!r} twice in one object: which one is meant?")
         return dict(pairs)
 
-    # Brackets inside strings do not count. A string is taken whole, or to the end where it is not closed: else every
-    # quotation mark would begin a search to the end.
+    # Brackets inside strings do not count. A match takes a whole string, or all to the end if the string is not closed.
+    # Without the second, every quotation mark would start a search to the end.
     brackets = re.findall(r'"(?:[^"\\]|\\.)*+"?|[\[\]{}]', text, re.DOTALL)
     steps = [1 if bracket in "[{" else -1 if bracket in "]}" else 0 for bracket in brackets]
     if (levels := max(accumulate(steps), default=0)) > MAX_LEVELS:
@@ -113,19 +112,19 @@ def read_json(path: str | Path, what: str, error: Raised, missing: Raised | None
 
 
 class ImageHeader(NamedTuple):
-    """What an image file says of itself before it is unpacked. kind: "PNG" or "JPEG"; frames: 2 or more if animated."""
+    """The header of an image file, read before the image is unpacked."""
 
-    kind: str
+    kind: str  # "PNG" or "JPEG".
     width: int
     height: int
-    frames: int
-    pixel_bytes: int  # of one pixel in memory
+    frames: int  # 2 or more if animated.
+    pixel_bytes: int  # Bytes of one pixel in memory.
 
 
 def read_image(
     path: str | Path, what: str, error: Raised, kinds: Sequence[str] = ("PNG", "JPEG"), missing: Raised | None = None
 ) -> np.ndarray:
-    """Return the pixels of a PNG or JPEG, as they are stored (OpenCV's order, BGR); at most `MAX_PIXELS` of them."""
+    """Return the pixels of a PNG or JPEG, at most `MAX_PIXELS`, with the channels of the file (in OpenCV's order, BGR)."""
     import cv2
 
     data = read_bytes(path, what, error, missing=missing)
@@ -154,7 +153,7 @@ def read_image(
 
 
 def _chunk_fault(data: bytes) -> str | None:
-    """The first chunk of a PNG that says it is longer than the file: OpenCV would take that much memory at once."""
+    """Return why a PNG is not whole, or None. OpenCV would allocate the length that a chunk announces."""
     # Source: PNG specification, section 5.3 (length, type, content, checksum).
     at = 8
     while at + 8 <= len(data):
@@ -168,19 +167,19 @@ def _chunk_fault(data: bytes) -> str | None:
 
 
 def _segment_fault(data: bytes) -> str | None:
-    """Why a JPEG is not whole: OpenCV fills in whatever its scan lacks, where the end of the image is missing."""
+    """Return why a JPEG is not whole, or None. OpenCV would fill in what is missing, without an error."""
     # Source: ITU-T T.81, section B.1.1 (segments), B.2.1 (a scan, then the end-of-image marker).
     at = 2
     while data[at : at + 1] == b"\xff":
         marker = data[at + 1 : at + 2]
-        if marker == b"\xda":  # from here on, the end's marker stands nowhere else: 0xFF of the data is followed by 0
+        if marker == b"\xda":  # In a scan only the end has this marker, because 0 follows every 0xFF of the data.
             return None if data.find(b"\xff\xd9", at) > 0 else "it has no end"
         at += 1 if marker == b"\xff" else 2 + int.from_bytes(data[at + 2 : at + 4], "big")
     return f"a segment is expected at byte {at}, where the file {'ends' if at >= len(data) else 'has something else'}"
 
 
 def image_header(data: bytes) -> ImageHeader | None:
-    """Return kind and size of a PNG or JPEG from its first bytes; None for anything else."""
+    """Return the header of a PNG or JPEG from its first bytes; None for any other file."""
     # Sources: PNG specification, section 11.2.2 (IHDR); ITU-T T.81, section B.2.2 (frame header).
     if data[:8] == b"\x89PNG\r\n\x1a\n" and data[12:16] == b"IHDR" and len(data) >= 33:
         width, height = struct.unpack(">II", data[16:24])
@@ -201,7 +200,7 @@ def image_header(data: bytes) -> ImageHeader | None:
 
 
 def atomic_write(path: str | Path, content: bytes | str) -> None:
-    """Write a file, or replace it, in one step. Raises `OSError` with the path; the old file is then still whole."""
+    """Write a file, or replace it, in one step. If it raises `OSError`, with the path, the old file is still whole."""
     path = Path(os.path.realpath(path))
     data = content.encode("utf-8") if isinstance(content, str) else content
     mode = path.stat().st_mode & 0o777 if path.exists() else 0o644
@@ -223,9 +222,10 @@ def atomic_write(path: str | Path, content: bytes | str) -> None:
 
 @contextlib.contextmanager
 def staging_dir(out: str | Path, products: Sequence[str] = ()) -> Iterator[Path]:
-    """Yield an empty folder. When the body ends, its files take their places in `out`, each in one step.
+    """Yield an empty folder. When the body ends, move the folder's files into `out`, each in one step.
 
-    products: names in `out` of which the body makes all anew; the rest of `out` stays. If it raises, all stays.
+    products: files and folders in `out` that the body makes again, so those that it did not make are removed. All else
+    in `out` stays. If the body raises, nothing in `out` changes.
     """
     out = Path(os.path.realpath(out))
     out.parent.mkdir(parents=True, exist_ok=True)
@@ -248,7 +248,7 @@ def staging_dir(out: str | Path, products: Sequence[str] = ()) -> Iterator[Path]
 
 
 def require_writable(folder: str | Path) -> None:
-    """Raise `OSError` unless something can be written into `folder`, or it can be made: before the work, not after."""
+    """Raise `OSError` unless `folder` can be written into, or made. Call it before long work, not after."""
     folder = Path(os.path.realpath(folder))
     nearest = next(path for path in (folder, *folder.parents) if path.exists())
     with tempfile.TemporaryFile(dir=nearest) as file:
@@ -257,6 +257,6 @@ def require_writable(folder: str | Path) -> None:
 
 @contextlib.contextmanager
 def temporary_folder() -> Iterator[Path]:
-    """Yield an empty folder in the system's temporary folder; it is removed when the body ends."""
+    """Yield an empty folder in the system's temporary folder, and remove it when the body ends."""
     with tempfile.TemporaryDirectory(prefix="course-", ignore_cleanup_errors=True) as folder:
         yield Path(folder)

@@ -1,21 +1,21 @@
-"""Rigid transforms, roll-pitch-yaw angles and means on the circle: what both methods share.
+"""Compute with rigid transforms, roll-pitch-yaw angles and means on the circle, which both methods share.
 
 A state is `(..., 6)` float64 `[x, y, z, roll, pitch, yaw]`: the pose of the body (x forward, y left, z up) in the world
 (z up), metres and radians, with R = Rz(yaw) Ry(pitch) Rx(roll). That is the state vector of eq. (1) of paper 1
 (Hatakeyama, Kanai, Date), whose phi, theta, psi are roll, pitch and yaw; a particle set, eq. (2), is an array `(N, 6)`.
 
-Near pitch = +-90 degrees roll and yaw turn about the same axis (gimbal lock): a state still names one pose there, but
-neighbouring poses have far-apart angles. Whoever perturbs or averages all three angles does it on rotations, through
-`rotation_exp` and `rotation_log`.
+Near pitch = +-90 degrees roll and yaw turn about the same axis (gimbal lock). A state still names one pose there, but
+neighbouring poses may have angles that are far apart. To perturb or average all three angles, work on rotations, with
+`rotation_exp`, `rotation_log` and `rotation_mean`.
 """
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-# Body (x forward, y left, z up) from camera optical (x right, y down, z forward): columns are the optical axes in body.
+# Turns vectors of the camera's optical frame (x right, y down, z forward) into the body's (x forward, y left, z up).
 BODY_FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 
-# Below this cosine of pitch roll and yaw cannot be told apart in float64, and roll is set to zero.
+# Below this cosine of the pitch, float64 does not separate roll from yaw, and roll is set to zero.
 _GIMBAL_LOCK_COSINE = 1e-9
 
 
@@ -30,11 +30,28 @@ def as_states(states: np.ndarray, name: str = "states") -> np.ndarray:
 
 
 def pose_matrix(states: np.ndarray) -> np.ndarray:
-    """Body-to-world matrices `(..., 4, 4)` of states `(..., 6)`.
+    """Return the body-to-world matrices of states.
 
-    T = [[R, t], [0, 1]] with R = Rz(yaw) Ry(pitch) Rx(roll), t = [x, y, z]. Metres, radians.
-    Raises `ValueError` for a wrong shape or values that are not finite.
-    X = [x, y, z, phi, theta, psi], P = {X_1, ..., X_N}; the order of the rotations is REP 103's.
+    X = [x, y, z, phi, theta, psi],    P = {X_1, ..., X_N}
+    T = [[R, t], [0, 1]],    R = Rz(psi) Ry(theta) Rx(phi),    t = [x, y, z]
+
+    The order of the rotations is REP 103's.
+
+    Parameters
+    ----------
+    states : array `(..., 6)`
+        x, y, z in metres, then roll, pitch, yaw in radians. A particle set has shape `(N, 6)`.
+
+    Returns
+    -------
+    array `(..., 4, 4)`
+        A point p of the body, `(3,)`, is at R p + t in the world.
+
+    Raises
+    ------
+    ValueError
+        If the last axis does not have six values, or if a value is not finite.
+
     Source: paper 1, eqs (1), (2).
     """
     states = as_states(states)
@@ -56,11 +73,27 @@ def pose_matrix(states: np.ndarray) -> np.ndarray:
 
 
 def state_from_matrix(matrices: np.ndarray) -> np.ndarray:
-    """States `(..., 6)` of body-to-world matrices `(..., 4, 4)`: the inverse of `pose_matrix`.
+    """Return the states of body-to-world matrices: the inverse of `pose_matrix`.
 
-    roll = atan2(R21, R22), pitch = atan2(-R20, hypot(R00, R10)), yaw = atan2(R10, R00), pitch within +-90 degrees.
-    In gimbal lock (pitch = +-90 degrees) roll is 0 and yaw carries the whole turn; the pose is kept.
-    Raises `ValueError` for a wrong shape, values that are not finite, or a 3 x 3 block that is not a rotation.
+    roll = atan2(R21, R22),    pitch = atan2(-R20, hypot(R00, R10)),    yaw = atan2(R10, R00)
+
+    The pitch lies within +-90 degrees. At +-90 degrees (gimbal lock) roll is 0 and yaw holds the whole turn, so the
+    state still names the same pose.
+
+    Parameters
+    ----------
+    matrices : array `(..., 4, 4)`
+        [[R, t], [0, 1]], translations in metres.
+
+    Returns
+    -------
+    array `(..., 6)`
+        x, y, z in metres, then roll, pitch, yaw in radians.
+
+    Raises
+    ------
+    ValueError
+        If the shape is wrong, a value is not finite, R is not a rotation, or the last row is not 0 0 0 1.
     """
     matrices = np.asarray(matrices, dtype=np.float64)
     if matrices.ndim < 2 or matrices.shape[-2:] != (4, 4):
@@ -87,7 +120,7 @@ def state_from_matrix(matrices: np.ndarray) -> np.ndarray:
 
 
 def is_rotation(matrices: np.ndarray, tolerance: float = 1e-4) -> np.ndarray:
-    """Whether each `(..., 3, 3)` matrix is orthonormal (R^T R = I to `tolerance`) with determinant +1."""
+    """Return whether each matrix R `(..., 3, 3)` is a rotation: R' R = I to `tolerance`, determinant > 0; `(...)`."""
     matrices = np.asarray(matrices, dtype=np.float64)
     gram = np.swapaxes(matrices, -1, -2) @ matrices
     orthonormal = np.abs(gram - np.eye(3)).max(axis=(-1, -2)) <= tolerance
@@ -95,9 +128,20 @@ def is_rotation(matrices: np.ndarray, tolerance: float = 1e-4) -> np.ndarray:
 
 
 def wrap_angle(a: np.ndarray | float) -> np.ndarray | float:
-    """Angles in radians brought to [-pi, pi)."""
+    """Return angles in [-pi, pi): (a + pi) mod 2 pi - pi.
+
+    Parameters
+    ----------
+    a : number or array `(...)`
+        Radians. NaN and infinity become NaN.
+
+    Returns
+    -------
+    number or array `(...)`
+        Radians. An angle that lies in the range keeps every bit.
+    """
     a = np.asarray(a, dtype=np.float64)
-    # An angle already in range is kept to the bit: adding and taking away pi would round it.
+    # Adding and subtracting pi would round an angle that lies in the range already.
     wrapped = np.where((a >= -np.pi) & (a < np.pi), a, (a + np.pi) % (2 * np.pi) - np.pi)
     # The remainder of a tiny negative number rounds up to the modulus itself, which would read +pi.
     wrapped = np.where(wrapped >= np.pi, -np.pi, wrapped)
@@ -105,11 +149,24 @@ def wrap_angle(a: np.ndarray | float) -> np.ndarray | float:
 
 
 def circular_mean(angles: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray | float:
-    """Mean direction of angles along their first axis, in [-pi, pi): atan2(sum w sin a, sum w cos a).
+    """Return the mean direction of angles along their first axis: atan2(sum w sin a, sum w cos a).
 
-    angles `(N, ...)` radians; weights `(N,)`, not negative, not all zero (None: equal). Result `(...)`.
-    A sum that vanishes (two opposite angles) has no direction; the result is then NaN.
-    Raises `ValueError` for no angles, angles that are not finite, or weights that do not fit.
+    Parameters
+    ----------
+    angles : array `(N, ...)`
+        Radians.
+    weights : array `(N,)`, optional
+        Not negative, and not all zero. Without them all angles count alike.
+
+    Returns
+    -------
+    number or array `(...)`
+        Radians in [-pi, pi). NaN if the sums vanish, as for two opposite angles, which have no mean direction.
+
+    Raises
+    ------
+    ValueError
+        If there are no angles, an angle is not finite, or the weights do not fit.
     """
     angles = np.asarray(angles, dtype=np.float64)
     if angles.ndim == 0 or len(angles) == 0:
@@ -126,36 +183,36 @@ def circular_mean(angles: np.ndarray, weights: np.ndarray | None = None) -> np.n
 
 
 def rotation_exp(rotation_vector: np.ndarray) -> np.ndarray:
-    """Rotation matrices `(..., 3, 3)` of rotation vectors `(..., 3)`: axis times angle, radians."""
+    """Return the rotation matrices `(..., 3, 3)` of rotation vectors `(..., 3)`: axis times angle, radians."""
     vectors = np.asarray(rotation_vector, dtype=np.float64)
     return Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix().reshape(*vectors.shape, 3)
 
 
 def rotation_log(rotation: np.ndarray) -> np.ndarray:
-    """Rotation vectors `(..., 3)` (axis times angle, radians, angle up to pi) of matrices: `rotation_exp` undone."""
+    """Return the rotation vectors `(..., 3)` of matrices `(..., 3, 3)`, angles up to pi: inverse of `rotation_exp`."""
     rotation = np.asarray(rotation, dtype=np.float64)
     return Rotation.from_matrix(rotation.reshape(-1, 3, 3)).as_rotvec().reshape(rotation.shape[:-1])
 
 
 def rotation_angle(rotation: np.ndarray) -> np.ndarray:
-    """Angle in [0, pi] radians by which each rotation `(..., 3, 3)` turns."""
+    """Return the angle `(...)` in [0, pi] radians by which each rotation `(..., 3, 3)` turns."""
     return np.linalg.norm(rotation_log(rotation), axis=-1)
 
 
 def rotation_mean(rotations: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray:
-    """Return the chordal mean `(3, 3)` of rotations `(N, 3, 3)`: the rotation nearest to sum w R."""
+    """Return the chordal mean `(3, 3)` of rotations R `(N, 3, 3)`: the rotation nearest to sum w R, weights `(N,)`."""
     return Rotation.from_matrix(rotations).mean(weights).as_matrix()
 
 
 def optical_pose(states: np.ndarray) -> np.ndarray:
-    """Camera-to-world matrices `(..., 4, 4)` in the optical convention (x right, y down, z forward) of states."""
+    """Return camera-to-world matrices `(..., 4, 4)`, optical convention (x right, y down, z forward), of states."""
     matrices = pose_matrix(states)
     matrices[..., :3, :3] = matrices[..., :3, :3] @ BODY_FROM_OPTICAL
     return matrices
 
 
 def state_from_optical_pose(matrices: np.ndarray) -> np.ndarray:
-    """States `(..., 6)` of camera-to-world matrices `(..., 4, 4)`, optical convention; inverse of `optical_pose`."""
+    """Return the states `(..., 6)` of camera-to-world matrices `(..., 4, 4)`: the inverse of `optical_pose`."""
     matrices = np.array(matrices, dtype=np.float64)
     if matrices.shape[-2:] == (4, 4):  # another shape is refused below
         matrices[..., :3, :3] = matrices[..., :3, :3] @ BODY_FROM_OPTICAL.T
@@ -168,7 +225,10 @@ UP_AXES = {
 
 
 def rotation_to_z_up(up: str) -> np.ndarray:
-    """Rotation `(4, 4)` that turns the named up axis ("y", "-z", ...) of a world into +z, by the shortest turn."""
+    """Return the shortest rotation `(4, 4)` that turns a world's up axis, such as "y" or "-z", into +z.
+
+    Raises `ValueError` if `up` names no axis.
+    """
     if up not in UP_AXES:
         raise ValueError(f"up must be one of {', '.join(UP_AXES)}; got {up!r}")
     matrix = np.eye(4)

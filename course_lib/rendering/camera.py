@@ -1,7 +1,8 @@
-"""The depth camera as a pinhole: its pixels, their rays, and the projection both render paths share (paper 1, 3.3).
+"""Describe the depth camera as a pinhole: its pixels, their rays, and its projection (paper 1, section 3.3).
 
-Optical frame: x right, y down, z forward. A point (X, Y, Z) falls on column u = fx X / Z + cx, row v = fy Y / Z + cy;
-pixel centres are at integer coordinates, so pixel (0, 0) covers u in [-0.5, 0.5). Depth is Z, along the optical axis.
+Optical frame: x right, y down, z forward. A point (X, Y, Z) falls on column u = fx X / Z + cx, row v = fy Y / Z + cy.
+Pixel centres are at integer coordinates, so pixel (0, 0) covers u in [-0.5, 0.5). Depth is Z, along the optical axis.
+A lens is no part of this camera: undistort its images first, and give the intrinsics of the undistorted ones.
 """
 
 from __future__ import annotations
@@ -11,19 +12,33 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# How far rounding may move a surface on a clip plane: metres for float32 coordinates (measured: at near at most
-# 0.005 mm), and steps Z^2 / (near 2^24) of a 24-bit z-buffer (measured: at far at most 2.6).
-PLANE_ROUNDING = 1e-4
-PLANE_ROUNDING_STEPS = 4
+# How far rounding may move a surface on a clip plane.
+PLANE_ROUNDING = 1e-4  # metres, of float32 coordinates; at near at most 0.005 mm were measured
+PLANE_ROUNDING_STEPS = 4  # steps Z^2 / (near 2^24) of a 24-bit z-buffer; at far at most 2.6 were measured
 MAX_CENTRE_OFFSET = 0.2  # share of the image's size by which a file's principal point may miss the middle (chosen)
 
 
 @dataclass(frozen=True)
 class DepthCamera:
-    """Pinhole depth camera.
+    """Hold the intrinsics of a pinhole depth camera.
 
-    width, height: pixels. fx, fy: focal lengths in pixels. cx, cy: principal point in pixels, pixel centres at
-    integers. near, far: clip planes in metres; a surface outside them is not hit. Raises `ValueError` for bad values.
+    A preset, such as `sr4000`, is a classmethod that returns the camera of a data sheet.
+
+    Parameters
+    ----------
+    width, height : int
+        Size of the depth image in pixels.
+    fx, fy : float
+        Focal lengths in pixels.
+    cx, cy : float
+        Principal point in pixels, pixel centres at integers.
+    near, far : float
+        Clip planes in metres. A surface outside them is not hit.
+
+    Raises
+    ------
+    ValueError
+        If a size is not a whole number of pixels, a value is not finite, or one of fx, fy, near, far is not positive.
     """
 
     width: int
@@ -59,7 +74,7 @@ class DepthCamera:
         near: float = 0.1,
         far: float = 30.0,
     ) -> DepthCamera:
-        """Return a camera whose image edges span the given fields of view: fx = (width / 2) / tan(fov / 2), centred."""
+        """Return a centred camera whose image edges span these fields of view: fx = (width / 2) / tan(fov / 2)."""
         if not (0 < horizontal_fov_deg < 180 and 0 < vertical_fov_deg < 180):
             raise ValueError(f"fields of view must be 0 to 180 degrees; got {horizontal_fov_deg}, {vertical_fov_deg}")
         fx = 0.5 * width / np.tan(np.deg2rad(horizontal_fov_deg) / 2)
@@ -68,14 +83,17 @@ class DepthCamera:
 
     @classmethod
     def sr4000(cls, near: float = 0.1, far: float = 30.0) -> DepthCamera:
-        """Return the paper's camera (section 4): 176 x 144 pixels; 43.6 x 34.6 degrees by its maker's data sheet."""
+        """Return the paper's camera (section 4), 176 x 144 pixels, 43.6 x 34.6 degrees by its maker's data sheet."""
         return cls.from_fov(176, 144, 43.6, 34.6, near, far)
 
     @classmethod
     def from_matrix(
         cls, matrix: np.ndarray, width: int, height: int, near: float = 0.1, far: float = 30.0
     ) -> DepthCamera:
-        """Return the camera of an intrinsic matrix K = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]], without skew."""
+        """Return the camera of an intrinsic matrix K = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]], without skew.
+
+        Raises `ValueError` for another form, or for a principal point far from the middle of the image.
+        """
         k = np.asarray(matrix, dtype=np.float64)
         if k.shape != (3, 3) or not np.allclose([k[0, 1], k[1, 0], k[2, 0], k[2, 1], k[2, 2] - 1], 0):
             raise ValueError(f"intrinsics must read [[fx, 0, cx], [0, fy, cy], [0, 0, 1]]; got {k.tolist()}")
@@ -89,19 +107,20 @@ class DepthCamera:
 
     @property
     def matrix(self) -> np.ndarray:
-        """The intrinsic matrix K `(3, 3)`."""
+        """Return the intrinsic matrix K `(3, 3)`."""
         return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
 
     @property
     def shape(self) -> tuple[int, int]:
-        """The shape (height, width) of its depth image."""
+        """Return the shape (height, width) of its depth image."""
         return self.height, self.width
 
     def resized(self, width: int, height: int) -> DepthCamera:
         """Return the same view on another pixel grid: image *edges* stay where they are, so pixel centres shift."""
         scale_x, scale_y = width / self.width, height / self.height
-        cx, cy = (self.cx + 0.5) * scale_x - 0.5, (self.cy + 0.5) * scale_y - 0.5
-        return DepthCamera(width, height, self.fx * scale_x, self.fy * scale_y, cx, cy, self.near, self.far)
+        lens = {"fx": self.fx * scale_x, "fy": self.fy * scale_y}
+        lens |= {"cx": (self.cx + 0.5) * scale_x - 0.5, "cy": (self.cy + 0.5) * scale_y - 0.5}
+        return dataclasses.replace(self, width=width, height=height, **lens)
 
     def every(self, k: int) -> DepthCamera:
         """Return the camera of every k-th row and column of its images, from pixel (0, 0) on: u / k, v / k.
@@ -113,12 +132,12 @@ class DepthCamera:
 
     @property
     def nearest(self) -> float:
-        """The least depth in metres that counts as seen: near, less what rounding may take from a surface on it."""
+        """Return the least depth in metres that counts as seen: near, less the rounding of a surface on it."""
         return max(self.near - PLANE_ROUNDING, 0.99 * self.near)
 
     @property
     def farthest(self) -> float:
-        """The greatest depth in metres that counts as seen: far, and what rounding may add to a surface on it."""
+        """Return the greatest depth in metres that counts as seen: far, plus the rounding of a surface on it."""
         step = self.far**2 / (self.near * 2**24)
         return self.far + PLANE_ROUNDING + PLANE_ROUNDING_STEPS * step
 

@@ -1,6 +1,6 @@
-"""A map made ready to be drawn: large triangles are cut, and all are sorted into compact chunks.
+"""Prepare a map for rendering: cut large triangles, and sort all triangles into compact chunks.
 
-A chunk is left out only if its bounding sphere lies outside one side, before near, or beyond far of a view.
+A view leaves a chunk out only if the chunk's bounding sphere lies outside one of its sides, before near, or beyond far.
 """
 
 import numpy as np
@@ -9,10 +9,10 @@ from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.compiled import compiled
 from course_lib.rendering.errors import SceneMapError
 
-MAX_EDGE = 32.0  # metres: so long edges OpenGL draws right to half a millimetre, seen from 2 m above
+MAX_EDGE = 32.0  # metres: OpenGL renders such an edge, seen from 2 m above, right to half a millimetre
 MAX_CUT_EDGE = 20_000.0  # metres: a longer edge is not cut; it belongs to no building, and `SceneMap.load` refuses it
 MAX_PIECES = 5_000_000  # a map that needs more is refused
-CHUNK_SIZE = 0.5  # metres, edge of the cubes that triangles are sorted into: some hundred of a map's 100,000 (chosen)
+CHUNK_SIZE = 0.5  # metres, edge of the cubes into which triangles are sorted: a hundred of a map's 100,000 (chosen)
 
 
 def cut_large_triangles(
@@ -20,7 +20,8 @@ def cut_large_triangles(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return vertices `(V', 3)` and faces `(F', 3)` of the same surface, no edge longer than `max_edge` metres.
 
-    A shared edge is halved for both triangles at one point, so no gap opens. Unchanged arrays come back as they are.
+    An edge that two triangles share is cut at one point, so no gap opens. Arrays that need no cut are returned as they
+    are. Raises `SceneMapError` if more than `MAX_PIECES` would be needed.
     """
     done: list[np.ndarray] = []
     while True:
@@ -33,13 +34,13 @@ def cut_large_triangles(
         done.append(faces[~cut])
         faces, long = faces[cut], long[cut]
         if 4 * len(faces) + sum(map(len, done)) > MAX_PIECES:
-            told = f"the map's triangles make more than {MAX_PIECES:,} pieces of {max_edge:g} m"
-            raise SceneMapError(f"{told}: are its coordinates metres? Remove what does not belong to the building")
+            reason = f"the map's triangles make more than {MAX_PIECES:,} pieces of {max_edge:g} m"
+            raise SceneMapError(f"{reason}: are its coordinates metres? Remove what does not belong to the building")
         vertices, faces = _halved(vertices, faces, long)
 
 
 def _halved(vertices: np.ndarray, faces: np.ndarray, long: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return triangles cut at the middle of their edges marked `long` `(F, 3)`: each into two, three or four."""
+    """Return vertices and faces after each edge marked `long` `(F, 3)` was cut in the middle: 2 to 4 for each face."""
     edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1), axis=-1)  # (F, 3, 2)
     unique, index = np.unique(edges[long], axis=0, return_inverse=True)
     middle = np.full(long.shape, -1)
@@ -50,7 +51,7 @@ def _halved(vertices: np.ndarray, faces: np.ndarray, long: np.ndarray) -> tuple[
         chosen = long.sum(axis=1) == count
         if not chosen.any():
             continue
-        # Turned so that edge 01 is long, and where two are long, 12 as well.
+        # Number the corners so that edge 01 is long, and where two edges are long, 12 too.
         first = long[chosen].argmax(axis=1) if count != 2 else (long[chosen].argmin(axis=1) + 1) % 3
         order = (first[:, None] + np.arange(3)) % 3
         (a, b, c), (ab, bc, ca) = (np.take_along_axis(x[chosen], order, axis=1).T for x in (faces, middle))
@@ -64,7 +65,7 @@ def _halved(vertices: np.ndarray, faces: np.ndarray, long: np.ndarray) -> tuple[
 
 
 class MeshChunks:
-    """Triangles sorted by the cube that their centre lies in."""
+    """Sort triangles by the cube in which their centre lies."""
 
     def __init__(self, vertices: np.ndarray, faces: np.ndarray, chunk_size: float = CHUNK_SIZE) -> None:
         corners = vertices[faces]
@@ -94,9 +95,9 @@ class MeshChunks:
         return visible
 
     def with_own_vertices(self, faces: np.ndarray, vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return vertices chunk by chunk `(V', 3)`, where each chunk's begin `(C + 1,)`, and faces in these numbers."""
+        """Return vertices chunk by chunk `(V', 3)`, where each chunk begins `(C + 1,)`, and faces in its numbers."""
         chunk = np.repeat(np.arange(len(self.starts) - 1), np.diff(self.starts))
-        # One number for a vertex in a chunk; sorted, they stand chunk by chunk.
+        # One number for each vertex of each chunk, which sorts them chunk by chunk.
         keys = (chunk[:, None] * np.int64(len(vertices)) + faces[self.order]).ravel()
         own, index = np.unique(keys, return_inverse=True)
         vertex_starts = np.searchsorted(own, np.arange(len(self.starts)) * np.int64(len(vertices)))
@@ -105,13 +106,13 @@ class MeshChunks:
 
 
 def lens_of(camera: DepthCamera) -> np.ndarray:
-    """Return fx, fy, cx, cy, near and far `(6,)` float32 as the compiled loops read them."""
+    """Return fx, fy, cx, cy, nearest and farthest `(6,)` float32, as the compiled loops read them."""
     lens = (camera.fx, camera.fy, camera.cx, camera.cy, camera.nearest, camera.farthest)
     return np.array(lens, dtype=np.float32)
 
 
 def inward_normals(camera: DepthCamera) -> np.ndarray:
-    """Return unit normals `(4, 3)` float32, optical frame, of the view's left, right, top and bottom, pointing in."""
+    """Return unit normals `(4, 3)` float32, optical frame, pointing in, of a view's left, right, top and bottom."""
     left, right = (-0.5 - camera.cx) / camera.fx, (camera.width - 0.5 - camera.cx) / camera.fx
     top, bottom = (-0.5 - camera.cy) / camera.fy, (camera.height - 0.5 - camera.cy) / camera.fy
     planes = np.array([[1, 0, -left], [-1, 0, right], [0, 1, -top], [0, -1, bottom]], dtype=np.float64)
@@ -126,7 +127,7 @@ def world_to_cameras(poses: np.ndarray, anchor: np.ndarray) -> tuple[np.ndarray,
 
 @compiled()
 def chunks_in_view(seen, nearest, rotation, position, lens, sides, spheres):
-    """Write the chunks that a view may see into `seen`, the least Z of each into `nearest`; return how many."""
+    """Write the chunks that a view may see into `seen`, and the least Z of each into `nearest`; return how many."""
     near, far = lens[4], lens[5]
     count = 0
     for c in range(len(spheres)):

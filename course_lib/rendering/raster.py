@@ -1,7 +1,8 @@
-"""A z-buffer in plain loops, compiled by Numba: what a graphics card does with a mesh, on every processor.
+"""Fill a z-buffer in plain loops, compiled by Numba, as a graphics card does it, on every processor.
 
-The chunks of the mesh that a view may see are drawn, the nearest first, unless all blocks of 8 x 8 pixels that they may
-cover hold nearer surfaces already. Each triangle is filled row by row, and each pixel keeps the greatest 1/Z.
+Chunks of the mesh are drawn, the nearest first. A chunk is skipped if no view can see it, or if all blocks of 8 x 8
+pixels that it may cover hold nearer surfaces already. Each triangle is filled row by row, and each pixel keeps the
+greatest 1/Z.
 
     u = fx X/Z + cx,    v = fy Y/Z + cy,    1/Z = a u + b v + c (0: nothing hit)
 """
@@ -16,15 +17,15 @@ from course_lib.rendering.chunks import MeshChunks, chunks_in_view, inward_norma
 from course_lib.rendering.compiled import compiled
 from course_lib.rendering.scene_map import SceneMap
 
-VIEWS_A_TASK = 8  # so few that no thread waits long for the last, so many that starting one costs little
+VIEWS_A_TASK = 8  # fewer cost more starts of tasks; with more, the last thread keeps the others waiting
 BLOCK = 8  # pixels: edge of the blocks whose farthest depth is kept
-CHUNKS_BETWEEN = 32  # chunks drawn before the blocks are looked at again: looking at every pixel costs, too
+CHUNKS_BETWEEN = 32  # chunks between two updates of the blocks, because an update reads every pixel
 _OVERLAP = 1e-4  # pixels by which a row's ends are stretched, so that rounding leaves no gap between two triangles
 _ONE = np.float32(1.0)
 
 
 class RasterBackend:
-    """Draws views into plain arrays. Threads share it, because `_mesh` is only ever exchanged as a whole."""
+    """Render views into plain arrays. Threads may share it, because `_mesh` is always replaced as a whole."""
 
     def __init__(self, scene_map: SceneMap, camera: DepthCamera) -> None:
         self._scene_map = scene_map
@@ -38,7 +39,7 @@ class RasterBackend:
     def render(self, poses: np.ndarray, out: np.ndarray) -> None:
         """Fill `out` `(N, H, W)` with the depth seen from camera poses `(N, 4, 4)`."""
         wanted, (anchor, spheres, vertices) = self._scene_map.anchor(poses[:, :3, 3]), self._mesh
-        if not np.array_equal(anchor, wanted):  # views seldom move on
+        if not np.array_equal(anchor, wanted):  # rarely: the cameras stay near the anchor
             anchor, spheres, vertices = self._mesh = self._about(wanted)
         rotations, positions = world_to_cameras(poses, anchor)
 
@@ -56,16 +57,16 @@ class RasterBackend:
         if threads == 1:
             list(map(draw, starts))
         else:
-            # A pool for each call: it costs a tenth of a millisecond, and no thread is there to be lost in a fork.
+            # A pool for each call costs a tenth of a millisecond. A thread that stayed would be lost in a fork.
             with ThreadPoolExecutor(threads) as pool:
                 list(pool.map(draw, starts))
 
     def _about(self, anchor: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return an anchor `(3,)`, and the chunks' spheres and vertices about it in float32."""
+        """Return the anchor `(3,)`, and the chunks' spheres and vertices about it in float32."""
         return anchor, self._chunks.spheres(anchor), (self._vertices - anchor).astype(np.float32)
 
     def describe(self) -> str:
-        """Return what draws, and on how many processors."""
+        """Return the name of the backend, and on how many processors it runs."""
         return f"z-buffer in compiled loops on {numba.config.NUMBA_NUM_THREADS} processors (Numba)"
 
 
@@ -103,7 +104,7 @@ def draw_views(
 
 @compiled()
 def cover(rotation, position, lens, sphere, height, width):
-    """Return the blocks (first, last row; first, last column) that a sphere may cover; all if it comes near the eye."""
+    """Return the blocks (first, last row; first, last column) that a sphere may cover; all if it is near the camera."""
     x, y, z = to_camera(rotation, position, sphere[0], sphere[1], sphere[2])
     radius = sphere[3]
     front, back = z - radius, z + radius
@@ -125,7 +126,7 @@ def cover(rotation, position, lens, sphere, height, width):
 
 @compiled()
 def is_hidden(blocks, rectangle, nearest):
-    """Return whether all pixels of the blocks in the rectangle hold something nearer than Z = `nearest`."""
+    """Return whether all pixels of the blocks in the rectangle hold a surface nearer than Z = `nearest`."""
     if nearest <= 0:
         return False
     inverse = _ONE / nearest
@@ -163,7 +164,7 @@ def project(scratch, rotation, position, lens, vertices):
 
 @compiled()
 def draw_faces(image, scratch, lens, faces):
-    """Fill triangles `(F, 3)` of projected vertices; those that reach before the near plane are cut there."""
+    """Fill triangles `(F, 3)` of projected vertices; a triangle that reaches before the near plane is cut there."""
     u, v, w = scratch[0], scratch[1], scratch[2]
     for f in range(len(faces)):
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
@@ -200,7 +201,7 @@ def draw_cut(image, scratch, lens, a, b, c):
 
 @compiled()
 def fill_triangle(image, u0, v0, w0, u1, v1, w1, u2, v2, w2):
-    """Keep in each pixel whose centre lies in the triangle the greater of what it holds and the plane's 1/Z."""
+    """Raise each pixel whose centre lies in the triangle to the triangle's 1/Z there, if that is greater."""
     height, width = image.shape
     if v1 < v0:
         u0, v0, w0, u1, v1, w1 = u1, v1, w1, u0, v0, w0
@@ -242,7 +243,7 @@ def fill_triangle(image, u0, v0, w0, u1, v1, w1, u2, v2, w2):
             line[column] = max(line[column], w)
 
 
-@compiled(fastmath=False)  # which knows no infinity
+@compiled(fastmath=False)  # because fast mathematics assumes that there is no infinity
 def invert(images, farthest):
     """Turn 1/Z into Z in place; `inf` where nothing was hit or it lies beyond `farthest`."""
     for k in range(len(images)):

@@ -1,4 +1,4 @@
-"""Depth images by ray casting, the reference: one ray through every pixel centre, by Embree where it can be had."""
+"""Cast a ray through every pixel centre: the reference backend, by Embree where it is installed."""
 
 import numpy as np
 import trimesh
@@ -14,7 +14,7 @@ except ImportError:  # no wheel for this processor
 
 
 class EmbreeCaster:
-    """Casts rays at triangles `(F, 3, 3)` in float32. Raises `ImportError` if embreex is missing."""
+    """Cast rays at triangles `(F, 3, 3)` in float32. Raises `ImportError` if embreex is missing."""
 
     def __init__(self, corners: np.ndarray) -> None:
         if EmbreeScene is None:
@@ -36,13 +36,13 @@ class EmbreeCaster:
 
 
 class TrimeshCaster:
-    """Casts rays as `EmbreeCaster` does, in Python and far slower."""
+    """Cast rays as `EmbreeCaster` does, in Python and far slower."""
 
     def __init__(self, corners: np.ndarray) -> None:
         self._mesh = trimesh.Trimesh(**trimesh.triangles.to_kwargs(corners), process=False)
 
     def cast(self, origins: np.ndarray, directions: np.ndarray) -> tuple[np.ndarray]:
-        """Return what `EmbreeCaster.cast` returns first: the distances."""
+        """Return the distances `(N,)` of `EmbreeCaster.cast`, and nothing else."""
         places, rays, _ = self._mesh.ray.intersects_location(origins, directions, multiple_hits=False)
         distance, along = np.full(len(origins), np.inf), directions[rays]
         distance[rays] = np.einsum("ij,ij->i", places - origins[rays], along) / np.einsum("ij,ij->i", along, along)
@@ -50,7 +50,7 @@ class TrimeshCaster:
 
 
 class RayBackend:
-    """Casts rays into the map. Threads share it, because anchor and caster are only ever exchanged together."""
+    """Cast rays into the map. Threads may share it, because anchor and caster are always replaced together."""
 
     def __init__(self, scene_map: SceneMap, camera: DepthCamera) -> None:
         self.camera = camera
@@ -61,11 +61,11 @@ class RayBackend:
     def render(self, poses: np.ndarray, out: np.ndarray) -> None:
         """Fill `out` `(N, H, W)` with the depth seen from camera poses `(N, 4, 4)`."""
         wanted, (anchor, caster) = self._scene_map.anchor(poses[:, :3, 3]), self._anchor_and_caster
-        if not np.array_equal(anchor, wanted):  # views seldom move on
+        if not np.array_equal(anchor, wanted):  # rarely: the cameras stay near the anchor
             anchor, caster = self._anchor_and_caster = self._about(wanted)
         for pose, image in zip(poses, out, strict=True):
             directions = self._rays @ pose[:3, :3].T
-            # Rays start on the near plane, so that nothing before it is hit.
+            # Rays start on the near plane, so they hit nothing before it.
             origins = pose[:3, 3] - anchor + self.camera.nearest * directions
             depth = self.camera.nearest + caster.cast(origins, directions)[0].astype(np.float64)
             depth[depth > self.camera.farthest] = np.inf

@@ -1,8 +1,9 @@
-"""GPU scene simulation (paper 1, 3.3.1): what a depth camera would measure at every particle's pose.
+"""Render the depth image that a camera would measure at every particle's pose (paper 1, 3.3.1, GPU scene simulation).
 
-"vtk" draws the map once per particle, as tiles of one off-screen window, and reads OpenGL's z-buffer back once.
-"raster" fills a z-buffer in compiled loops. "ray" shoots one ray through every pixel centre: the reference. Threads may
-share a renderer. A forked child may use an inherited one, unless it is "vtk". A pickled one opens at its first use.
+"vtk" renders the map once per particle, as tiles of one off-screen window, and reads OpenGL's z-buffer back once.
+"raster" fills a z-buffer in compiled loops. "ray" casts one ray through every pixel centre and is the reference.
+Threads may share a renderer. A forked child may use an inherited one, unless it is "vtk". An unpickled renderer opens
+its backend at its first use.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from course_lib.rendering.ray import RayBackend
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.rendering.sensor import depth_image_from_points, measured_points
 
-MAX_BATCH_PIXELS = 200 * 176 * 144  # of one off-screen window: 200 images of the SR4000, 80 MB with colour and depth
+MAX_BATCH_PIXELS = 200 * 176 * 144  # of one off-screen window: the paper's 200 images, 80 MB with colour and depth
 # Files in /dev that show a graphics card on Linux: most drivers', NVIDIA's, and Windows' (WSL).
 CARDS = ("dri/renderD*", "nvidia[0-9]*", "dxg")
 # Parts of the names under which OpenGL draws on the processor: Mesa's, Apple's, Microsoft's and Google's.
@@ -35,7 +36,7 @@ Backend = Literal["auto", "vtk", "raster", "ray"]
 
 @cache  # so that a process decides once
 def chosen_backend(backend: Backend) -> Backend:
-    """Return `backend`, or what "auto" means on this computer: "vtk" on a graphics card, else "raster"."""
+    """Return `backend`, or the choice of "auto" for this computer: "vtk" on a graphics card, else "raster"."""
     if backend != "auto":
         return backend
     if sys.platform.startswith("linux") and not any(any(Path("/dev").glob(card)) for card in CARDS):
@@ -50,12 +51,30 @@ def chosen_backend(backend: Backend) -> Backend:
 
 
 class DepthRenderer:
-    """Draws depth images of a map from any number of poses; a context manager.
+    """Render depth images of a map from any number of poses; a context manager.
 
-    backend: "vtk" (OpenGL's z-buffer), "raster" (a compiled z-buffer), "ray" (the reference), or "auto": "vtk" on a
-    graphics card, else "raster"; the attribute `backend` says which. exact: draw every triangle; else a large map is
-    drawn with fewer triangles, which lie within centimetres of it. max_batch_pixels: bounds the memory of a batch.
-    Raises `OpenGLError` where OpenGL cannot start, `ValueError` for a bad backend, `RendererClosedError` after `close`.
+    Parameters
+    ----------
+    scene_map : SceneMap
+        The map that is rendered.
+    camera : DepthCamera
+        Its pixels, rays and clip planes.
+    backend : "auto", "vtk", "raster" or "ray"
+        OpenGL's z-buffer, a compiled z-buffer, or the reference. "auto" chooses "vtk" on a graphics card, else
+        "raster". The attribute `backend` is the choice.
+    exact : bool
+        Whether every triangle is rendered. Else a large map gets fewer triangles, which lie within centimetres of it.
+    max_batch_pixels : int
+        At most so many pixels are rendered at once, which bounds the memory.
+
+    Raises
+    ------
+    ValueError
+        If there is no such backend.
+    OpenGLError
+        If OpenGL cannot start.
+    RendererClosedError
+        If the renderer is used after `close`.
     """
 
     def __init__(
@@ -104,22 +123,37 @@ class DepthRenderer:
         return drawn if faces is drawn.faces else SceneMap(vertices, faces)
 
     def render(self, states: np.ndarray) -> np.ndarray:
-        """Return depth images `(N, H, W)` float32 metres of the map from states `(N, 6)`; `inf` where nothing is hit.
+        """Return a depth image of the map from every state.
 
-        Z_(i) = {z_(i)^1, ..., z_(i)^m}: one value a pixel, m = H x W as many as the real camera has.
-        A single state `(6,)` counts as N = 1. Raises `ValueError` for states of a wrong shape or not finite.
+        Z_(i) = {z_(i)^1, ..., z_(i)^m}: one value for each of the real camera's m = H x W pixels
+
+        Parameters
+        ----------
+        states : array `(N, 6)`
+            x, y, z in metres, then roll, pitch, yaw in radians. A single state `(6,)` counts as N = 1.
+
+        Returns
+        -------
+        array `(N, H, W)` of float32
+            Metres along the optical axis; `inf` where nothing is hit.
+
+        Raises
+        ------
+        ValueError
+            If the states have a wrong shape or are not finite.
+
         Source: paper 1, eq. (6).
         """
         return self.render_poses(optical_pose(np.atleast_2d(as_states(states))))
 
     def batches(self, states: np.ndarray) -> Iterator[np.ndarray]:
-        """Yield the same images a batch `(n, H, W)` at a time, for more particles than images fit into memory."""
+        """Yield the images of `render` in batches `(n, H, W)`, where all of them would not fit into memory."""
         states = np.atleast_2d(states)
         for start in range(0, len(states), self.batch_size):
             yield self.render(states[start : start + self.batch_size])
 
     def render_poses(self, camera_to_world: np.ndarray) -> np.ndarray:
-        """Return the same from camera-to-world matrices `(N, 4, 4)` in the optical convention."""
+        """Return the images of `render` from camera-to-world matrices `(N, 4, 4)` in the optical convention."""
         backend = self._backend()
         poses = np.asarray(camera_to_world, dtype=np.float64)
         if poses.ndim != 3 or poses.shape[1:] != (4, 4):
@@ -133,10 +167,25 @@ class DepthRenderer:
         return images
 
     def render_points(self, points: np.ndarray) -> np.ndarray:
-        """Return the depth image `(H, W)` float32 metres of the camera's own points; NaN where none fell.
+        """Return the depth image of the camera's own points, as the map's images are rendered.
 
-        points: `(..., 3)` metres in the optical frame; NaN points are no measurement. "vtk" sends them through its
-        z-buffer, the others through `depth_image_from_points`. Raises `ValueError` for a wrong shape.
+        "vtk" sends the points through its z-buffer, the other backends through `depth_image_from_points`.
+
+        Parameters
+        ----------
+        points : array `(..., 3)`
+            Metres in the optical frame. NaN points are no measurement.
+
+        Returns
+        -------
+        array `(H, W)` of float32
+            Metres along the optical axis; NaN on a pixel without a point.
+
+        Raises
+        ------
+        ValueError
+            If the last axis does not have three values.
+
         Source: paper 1, section 3.3.2.
         """
         backend = self._backend()
@@ -145,7 +194,7 @@ class DepthRenderer:
         return backend.render_points(measured_points(points))
 
     def describe(self) -> str:
-        """Return the name of what draws, such as OpenGL's name of the graphics card."""
+        """Return the name of the backend's device, such as OpenGL's name of the graphics card."""
         return self._backend().describe()
 
     def close(self) -> None:
@@ -156,7 +205,7 @@ class DepthRenderer:
         self._open_backend = None
 
     def _backend(self) -> object:
-        """Open after unpickling at first use, because an error on arrival would hang a pool."""
+        """Return the backend; open it if this renderer was unpickled, where an error would hang a pool."""
         if self._closed:
             raise RendererClosedError("this renderer was closed; make a new DepthRenderer(scene_map, camera)")
         backend = self._open_backend
@@ -165,7 +214,7 @@ class DepthRenderer:
         return backend
 
     def __getstate__(self) -> dict[str, object]:
-        """For pickle and copy: leave the window out."""
+        """Return the state for pickle and copy, without the backend, which may hold a window."""
         return vars(self) | {"_open_backend": None}
 
     def __enter__(self) -> DepthRenderer:

@@ -1,6 +1,6 @@
-"""The environment map of paper 1: a triangle mesh in the world frame, from a terrestrial laser scan (section 1).
+"""Read and check the environment map of paper 1: a triangle mesh in the world frame, from a laser scan (section 1).
 
-trimesh reads the file. We count what came, because trimesh also reads half a file.
+trimesh reads the file. We count its triangles, because trimesh reads half a file without an error.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from course_lib.files import read_bytes
 from course_lib.geometry import is_rotation, rotation_to_z_up
 from course_lib.rendering.errors import SceneMapError, SceneMapWarning
 
-_MIN_AREA = 1e-16  # square metres: a smaller triangle has no inside that a pixel centre could hit
+_MIN_AREA = 1e-16  # square metres: no pixel centre hits a smaller triangle
 MAX_COORDINATE = 2e7  # metres, half the Earth's circumference: no map has its zero farther away
-MAX_DISTANCE = 5000.0  # metres: no part of a building lies farther from its middle
+MAX_DISTANCE = 5000.0  # metres: no part of a building is farther from its middle
 MAX_BUILDING = 200.0  # metres: a map that is larger in all three directions is doubtful
 # Metres between possible anchors. A wall drawn 0.7 km from the anchor is wrong by 1 mm, at 80 m by 0.1 mm.
 _ANCHOR_STEP = 100.0
@@ -29,12 +29,27 @@ _CURE = "To leave such triangles out: drop_far=True, or `localize --drop-far`"
 
 
 class SceneMap:
-    """Triangles in the world frame.
+    """Hold a map of triangles in the world frame.
 
-    vertices: `(V, 3)` float64 metres. faces: `(F, 3)` int32 vertex indices; both sides of a triangle are seen. up: the
-    axis of the vertices that points up ("y", "-x", ...), which becomes z. drop_far: leave out triangles farther than
-    `MAX_DISTANCE` from the middle; those without area are left out always. bounds: `(2, 3)`. origin: `(3,)`, the median
-    of the corners. Warns (`SceneMapWarning`) of what looks like millimetres. Raises `SceneMapError` for no map.
+    Both sides of a triangle are seen. Triangles without an area are left out. The attributes are read-only: `vertices`
+    and `faces`, `bounds` `(2, 3)`, and `origin` `(3,)`, the median of the corners. Warns (`SceneMapWarning`) if the
+    map looks like millimetres.
+
+    Parameters
+    ----------
+    vertices : array `(V, 3)`
+        Corners in metres.
+    faces : array `(F, 3)` of integers
+        Three indices into `vertices` for each triangle.
+    up : "x", "y", "z", "-x", "-y" or "-z"
+        The axis of the vertices that points up. It becomes z.
+    drop_far : bool
+        Whether triangles farther than `MAX_DISTANCE` from the middle are left out.
+
+    Raises
+    ------
+    SceneMapError
+        If the arrays hold no triangles, are not finite, or reach beyond `MAX_COORDINATE`.
     """
 
     def __init__(
@@ -80,10 +95,22 @@ class SceneMap:
 
     @classmethod
     def load(cls, path: str | Path, drop_far: bool = False, *, up: str = "z") -> SceneMap:
-        """Return the map in any mesh file that trimesh reads (PLY, OBJ, STL, GLB, ...), its vertices in metres.
+        """Return the map in a mesh file.
 
-        up, drop_far: as in the class. Raises `FileNotFoundError`, or `SceneMapError` for a file that cannot be read,
-        holds fewer triangles than it announces (an OBJ announces nothing), or has some far away without drop_far.
+        Parameters
+        ----------
+        path : str or Path
+            Any mesh that trimesh reads (PLY, OBJ, STL, GLB, ...), its vertices in metres.
+        drop_far, up
+            As in the class.
+
+        Raises
+        ------
+        FileNotFoundError
+            If there is no such file.
+        SceneMapError
+            If the file cannot be read, holds fewer triangles than it announces (an OBJ announces nothing), or has
+            triangles far away and drop_far is False.
         """
         return cls(*read_mesh(path), up=up, drop_far=drop_far, _name=f"{path}: ")
 
@@ -93,7 +120,7 @@ class SceneMap:
         return cls(*_triangles_of(mesh), up=up, drop_far=drop_far)
 
     def transformed(self, matrix: np.ndarray) -> SceneMap:
-        """The map moved by a rigid transform `(4, 4)`."""
+        """Return the map moved by a rigid transform `(4, 4)`. Raises `ValueError` for another matrix."""
         matrix = np.asarray(matrix, dtype=np.float64)
         if matrix.shape != (4, 4) or not np.isfinite(matrix).all() or not is_rotation(matrix[:3, :3]):
             raise ValueError("matrix must be a rigid transform (4, 4): finite, with a rotation in the upper left")
@@ -102,13 +129,13 @@ class SceneMap:
     def anchor(self, positions: np.ndarray) -> np.ndarray:
         """Return the point `(3,)` near cameras `(N, 3)` that renderers subtract before anything becomes float32.
 
-        It is the map's origin, or whole hundreds of metres from it, so that it seldom moves.
+        It is the map's origin, or whole hundreds of metres from it, so that it rarely changes.
         """
         middle = np.clip(np.median(positions, axis=0), *self.bounds)
         return self.origin + _ANCHOR_STEP * np.round((middle - self.origin) / _ANCHOR_STEP)
 
     def __reduce__(self) -> tuple[type[SceneMap], tuple[np.ndarray, np.ndarray]]:
-        """For pickle and copy: make the map anew, because arrays that travel forget that they are read-only."""
+        """Return how pickle and copy build the map again, because copied arrays would not be read-only."""
         return SceneMap, (self.vertices, self.faces)
 
     def contains(self, positions: np.ndarray, margin: float = 0.0) -> np.ndarray:
@@ -126,7 +153,7 @@ class SceneMap:
 
 
 def _far_triangles(corners: np.ndarray) -> tuple[np.ndarray, str]:
-    """Return which of the triangles `(F, 3, 3)` lie absurdly far from the median of all corners, and say it."""
+    """Return which triangles `(F, 3, 3)` are over `MAX_DISTANCE` from the median of all corners, and a sentence."""
     sound = (np.abs(corners) <= MAX_COORDINATE).all(axis=(1, 2))
     middle = np.median(corners[sound].reshape(-1, 3), axis=0) if sound.any() else np.zeros(3)
     with np.errstate(over="ignore"):
@@ -143,12 +170,12 @@ def _far_triangles(corners: np.ndarray) -> tuple[np.ndarray, str]:
 
 
 def mesh_endings() -> set[str]:
-    """Return the endings of files that are read as meshes, such as "ply"; archives are not, they may hold anything."""
+    """Return the endings of files that are read as meshes, such as "ply". Archives are not: they may hold anything."""
     return set(trimesh.available_formats()) - {"zip", "tar.gz", "tar.bz2"}
 
 
 def read_mesh(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
-    """Return the vertices `(V, 3)` and faces `(F, 3)` of a mesh file."""
+    """Return the vertices `(V, 3)` and faces `(F, 3)` of a mesh file; errors as in `SceneMap.load`."""
     path = Path(path)
     data = read_bytes(path, "map", SceneMapError, missing=FileNotFoundError)
     kind = path.suffix.lower().lstrip(".")
@@ -171,7 +198,7 @@ def read_mesh(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _triangles_of(mesh: trimesh.Trimesh | trimesh.Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return the vertices `(V, 3)` and faces `(F, 3)` of what trimesh made; a point cloud has no faces."""
+    """Return the vertices `(V, 3)` and faces `(F, 3)` of trimesh's object; a point cloud has no faces."""
     if isinstance(mesh, trimesh.Scene):
         mesh = mesh.to_mesh()
     if not hasattr(mesh, "vertices"):
@@ -180,7 +207,7 @@ def _triangles_of(mesh: trimesh.Trimesh | trimesh.Scene) -> tuple[np.ndarray, np
 
 
 def _announced(data: bytes, kind: str) -> tuple[int, int]:
-    """Return at least how many vertices and faces a whole file of this kind gives, as far as it says."""
+    """Return how many vertices and faces a file of this kind announces: at least so many a whole file holds."""
     if kind == "stl":
         return 0, 1  # trimesh reads nothing at all from half a file
     if kind == "off":

@@ -1,4 +1,4 @@
-"""The depth camera's data (paper 1, 3.3.2): its points become a depth image as the simulated views do."""
+"""Turn the depth camera's points into a depth image, as the simulated views are made (paper 1, 3.3.2)."""
 
 import numpy as np
 
@@ -6,13 +6,31 @@ from course_lib.rendering.camera import DepthCamera
 
 
 def depth_image_from_points(points: np.ndarray, camera: DepthCamera) -> np.ndarray:
-    """Return the depth image `(H, W)` float32 metres of points `(..., 3)` in the optical frame; NaN where none fell.
+    """Return the depth image of points in the optical frame: the reference of `DepthRenderer.render_points`.
 
-    A point (X, Y, Z) with near <= Z <= far (each within rounding: `DepthCamera.nearest`, `farthest`) falls on the pixel
-    nearest to u = fx X / Z + cx, v = fy Y / Z + cy; of several on one pixel the nearest counts:
-    z^j = min { Z : point on pixel j }.
-    NaN points are no measurement. Raises `ValueError` for a wrong shape.
-    Source: paper 1, eq. (7); NumPy reference of `DepthRenderer.render_points`.
+    z^j = min { Z : point on pixel j }
+
+    A point (X, Y, Z) falls on the pixel nearest to u = fx X / Z + cx, v = fy Y / Z + cy if near <= Z <= far, each
+    within rounding (`DepthCamera.nearest`, `farthest`).
+
+    Parameters
+    ----------
+    points : array `(..., 3)`
+        Metres. NaN points are no measurement.
+    camera : DepthCamera
+        Its pixels and clip planes.
+
+    Returns
+    -------
+    array `(H, W)` of float32
+        Metres along the optical axis; NaN on a pixel without a point.
+
+    Raises
+    ------
+    ValueError
+        If the last axis does not have three values.
+
+    Source: paper 1, eq. (7).
     """
     points = measured_points(points)
     points = points[(points[:, 2] >= camera.nearest) & (points[:, 2] <= camera.farthest)]
@@ -28,7 +46,7 @@ def depth_image_from_points(points: np.ndarray, camera: DepthCamera) -> np.ndarr
 
 
 def measured_points(points: np.ndarray) -> np.ndarray:
-    """Return those of points `(..., 3)` that are finite, `(M, 3)`."""
+    """Return the finite ones of points `(..., 3)`: `(M, 3)`. Raises `ValueError` for a wrong shape."""
     points = np.asarray(points, dtype=np.float64)
     if points.ndim == 0 or points.shape[-1] != 3:
         raise ValueError(f"points must have shape (..., 3); got {points.shape}")
@@ -37,9 +55,10 @@ def measured_points(points: np.ndarray) -> np.ndarray:
 
 
 def subsample_depth(depth: np.ndarray, camera: DepthCamera, coarse: DepthCamera) -> np.ndarray:
-    """Return the fine pixel nearest to each centre of a coarser grid `(h, w)` with the same view.
+    """Return the depth image `(h, w)` of a coarser camera with the same view, each pixel from the nearest fine one.
 
-    Values are picked, not averaged, because the mean of depths across an edge is a surface that is not there.
+    depth: `(H, W)` of the fine camera. Values are picked, not averaged, because the mean of the depths across an edge
+    is a surface that does not exist. Raises `ValueError` for a wrong shape.
     """
     depth = np.asarray(depth)
     if depth.shape != camera.shape:

@@ -1,7 +1,7 @@
-"""Fewer triangles that look the same to a depth camera: `DepthRenderer` draws them unless it is told `exact=True`.
+"""Find fewer triangles that look the same to a depth camera. `DepthRenderer` renders them unless `exact=True`.
 
-VTK merges triangles while 99 of 100 vertices of the map lie within a tolerance of what is left (after Garland and
-Heckbert, "Surface simplification using quadric error metrics", 1997). joblib keeps the result.
+VTK merges triangles as long as 99 of 100 vertices of the map are within a tolerance of the remaining triangles (after
+Garland and Heckbert, "Surface simplification using quadric error metrics", 1997). joblib keeps the result.
 """
 
 import contextlib
@@ -18,19 +18,20 @@ from vtkmodules.vtkFiltersCore import vtkQuadricDecimation, vtkStaticCleanPolyDa
 
 from course_lib.rendering.scene_map import SceneMap
 
-TOLERANCE = 0.015  # metres: a pixel that is off by so much still counts seven eighths in the likelihood (alpha = 0.1 m)
-WITHIN_PERCENT = 99
-MIN_TRIANGLES = 20_000  # a smaller map is drawn as it is, because there is nothing to gain
-# Quadric errors (square metres, weighed by areas) at which the merging of edges stops, one after the other.
+TOLERANCE = 0.015  # metres: chosen with alpha = 0.1 m, where a pixel with this error still counts seven eighths
+WITHIN_PERCENT = 99  # of the vertices lie within the tolerance: a stray one must not stop the merging
+MIN_TRIANGLES = 20_000  # a smaller map is rendered as it is, because it is fast already
+# Quadric errors (square metres, weighted by areas) up to which edges are merged: each in turn, until one is too much.
 _QUADRIC_ERRORS = (1e-8, 1e-7, 3e-7, 6e-7, 1e-6, 2e-6, 4e-6, 8e-6, 2e-5, 5e-5)
-_CHECKED_VERTICES = 20_000
+_CHECKED_VERTICES = 20_000  # at most, evenly spread, because each is checked in a Python loop
 
 
 @lru_cache(maxsize=4)
 def simplified(scene_map: SceneMap) -> SceneMap:
-    """Return the map with fewer triangles: 99 % of its vertices lie within `TOLERANCE` of them.
+    """Return the map with fewer triangles; 99 % of its vertices lie within `TOLERANCE` of them.
 
-    A small map comes back as it is. A million triangles take 16 s, once, because the user's cache keeps the result.
+    A small map is returned as it is. A million triangles take 16 s, but only once, because the user's cache keeps the
+    result.
     """
     if len(scene_map) < MIN_TRIANGLES:
         return scene_map
@@ -44,7 +45,7 @@ def simplified(scene_map: SceneMap) -> SceneMap:
 def _simplify(
     scene_map: SceneMap, tolerance: float, within_percent: int, quadric_errors: tuple[float, ...], vtk_version: str
 ) -> SceneMap:
-    """Merge more and more edges, as long as the map stays within the tolerance (all arguments name what is kept)."""
+    """Merge more and more edges, as long as the map stays within the tolerance. Its arguments are the cache's key."""
     left = _welded(scene_map)
     stride = max(1, len(scene_map.vertices) // _CHECKED_VERTICES)
     checked = (scene_map.vertices - scene_map.origin)[np.unique(scene_map.faces)[::stride]]
@@ -63,7 +64,7 @@ def _simplify(
 
 
 def _welded(scene_map: SceneMap) -> vtkPolyData:
-    """Return the map about its origin for VTK, with one vertex where corners meet, or triangles would be torn apart."""
+    """Return the map about its origin for VTK. Corners that meet become one vertex, or the merging would open gaps."""
     points, cells = vtkPoints(), vtkCellArray()
     points.SetData(numpy_to_vtk(scene_map.vertices - scene_map.origin, deep=True, array_type=VTK_DOUBLE))
     cells.SetData(3, numpy_to_vtkIdTypeArray(scene_map.faces.astype(np.int64).ravel(), deep=True))

@@ -1,7 +1,7 @@
-"""Depth images by VTK's z-buffer: every particle's view is a tile of one off-screen window, read back once.
+"""Render depth images by VTK's z-buffer: every particle's view is a tile of one off-screen window, read back once.
 
-Each tile has a vtkRenderer of its own; all share one actor, the map. Threads take turns with the window (`_drawing`).
-After a fork OpenGL's threads are missing and every call would wait for ever, so a child gets a named error.
+Each tile has its own vtkRenderer, and all share one actor, the map. Threads take turns with the window (`_drawing`).
+A forked child has no OpenGL threads, so every call would wait for ever. It raises a named error instead.
 """
 
 import os
@@ -34,7 +34,7 @@ from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
 
 CURE = (
-    "On Debian or Ubuntu: apt-get install libegl1 libgl1-mesa-dri libgl1 (`python3 course.py check` tells what is "
+    "On Debian or Ubuntu: apt-get install libegl1 libgl1-mesa-dri libgl1 (`python3 course.py check` says what is "
     'missing). Without OpenGL, DepthRenderer(..., backend="raster") gives the same images: leave out --backend vtk'
 )
 MAX_WINDOW_SIDE = 8192  # pixels: every OpenGL draws windows of this size
@@ -54,7 +54,7 @@ def off_screen_window() -> vtkRenderWindow:
     with quiet():
         window = vtkRenderWindow()
     if window.GetClassName() == "vtkOSOpenGLRenderWindow":
-        # VTK's last resort when EGL fails; drawing with it crashes where the OSMesa library is missing.
+        # VTK falls back to this class when EGL fails. Without the OSMesa library it crashes.
         raise OpenGLError(f"OpenGL cannot start without a display (EGL failed). {CURE}")
     window.SetOffScreenRendering(True)
     window.SetMultiSamples(0)
@@ -64,7 +64,7 @@ def off_screen_window() -> vtkRenderWindow:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Silence VTK's own messages about OpenGL that cannot start. Our errors say it better."""
+    """Silence VTK's own messages about OpenGL that cannot start, because our errors also say what to do."""
     verbosity = vtkLogger.GetCurrentVerbosityCutoff()
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
     try:
@@ -83,7 +83,7 @@ def _require_own_process(process: int) -> None:
 
 
 def _leave_windows_to_the_parent() -> None:
-    """Add a reference to each window, so that this forked child never frees one: that would hang."""
+    """Add a reference to each window, so that this forked child never frees one, which would hang."""
     for window in _windows:
         window.Register(None)
 
@@ -93,7 +93,7 @@ if hasattr(os, "register_at_fork"):  # not on Windows, which cannot fork
 
 
 class VtkBackend:
-    """Draws batches of at most `batch_size` views, fewer where a window would become too large for OpenGL."""
+    """Render batches of at most `batch_size` views, fewer where a window would become too large for OpenGL."""
 
     def __init__(self, scene_map: SceneMap, camera: DepthCamera, batch_size: int) -> None:
         if camera.width > MAX_WINDOW_SIDE or camera.height > MAX_WINDOW_SIDE:
@@ -129,7 +129,7 @@ class VtkBackend:
 
     def _render_batch(self, poses: np.ndarray, out: np.ndarray) -> None:
         anchor = self._scene_map.anchor(poses[:, :3, 3])
-        if not np.array_equal(anchor, self._anchor):  # views seldom move on
+        if not np.array_equal(anchor, self._anchor):  # rarely: the cameras stay near the anchor
             self._upload_vertices(anchor)
         self._draw_only(poses)
         self._make_room(len(poses))
@@ -152,13 +152,13 @@ class VtkBackend:
         return image
 
     def describe(self) -> str:
-        """Return OpenGL's name of what draws, such as llvmpipe (a CPU) or a graphics card."""
+        """Return OpenGL's name of its device, such as llvmpipe (a CPU) or a graphics card."""
         with self._drawing():
             named = re.search(r"^OpenGL renderer string: *(.+)$", self._window.ReportCapabilities(), re.MULTILINE)
             return named[1].strip() if named else self._window.GetClassName()
 
     def close(self) -> None:
-        """Free the window with its framebuffers; a forked child leaves it to its parent."""
+        """Free the window with its framebuffers. A forked child leaves it to its parent."""
         if self._process != os.getpid():
             return
         with self._turn:
@@ -172,7 +172,7 @@ class VtkBackend:
 
     @contextmanager
     def _drawing(self) -> Iterator[None]:
-        """Take the window's context for this thread, which would else read an earlier image without an error."""
+        """Give this thread the window's context. Without it, the thread would read an earlier image, and no error."""
         _require_own_process(self._process)  # before the lock: a fork copies it as it is, held or not
         with self._turn:
             if self._window is None:
@@ -196,7 +196,7 @@ class VtkBackend:
             window.ReleaseCurrent()
 
     def _make_room(self, count: int) -> None:
-        """Make the window and its tiles large and many enough; they only ever grow."""
+        """Enlarge the window and add tiles until `count` views have room; nothing ever shrinks."""
         rows, columns = max(1, self._rows, -(-count // self._columns)), self._columns
         if rows == self._rows and count <= len(self._tiles):
             return
@@ -209,7 +209,7 @@ class VtkBackend:
                 tile.SetViewport(column / columns, row / rows, (column + 1) / columns, (row + 1) / rows)
 
     def _new_tile(self, actor: vtkActor) -> vtkRenderer:
-        """Return a tile of the window that draws an actor as the camera projects it."""
+        """Return a new tile of the window that renders an actor with the camera's projection."""
         tile, matrix = vtkRenderer(), vtkMatrix4x4()
         tile.AddActor(actor)
         matrix.DeepCopy(self._drawn.projection_matrix().ravel())
@@ -229,7 +229,7 @@ class VtkBackend:
         self._anchor = anchor
 
     def _draw_only(self, poses: np.ndarray) -> None:
-        """Give OpenGL the triangles that one of the views may see, if it has not enough or far too many of them."""
+        """Give OpenGL the triangles that the views may see, if it lacks some of them or has more than twice as many."""
         visible = self._chunks.visible(self._drawn, poses, self._anchor)
         if (visible & ~self._drawn_chunks).any() or 2 * visible.sum() < self._drawn_chunks.sum():
             cells = vtkCellArray()
@@ -240,14 +240,14 @@ class VtkBackend:
             self._drawn_chunks = visible
 
     def _draw_and_read(self, tiles: list[vtkRenderer], out: np.ndarray) -> None:
-        """Draw only these tiles and fill `out` `(n, H, W)` from them."""
+        """Render only these tiles and fill `out` `(n, H, W)` from them."""
         try:
             for tile in tiles:
                 tile.DrawOn()
             self._window.Render()
             self._read_tiles(out)
         finally:
-            # Also after Ctrl-C, because the map's first tile and the points' tile cover the same pixels.
+            # Also after Ctrl-C: the map's first tile and the points' tile cover the same pixels.
             for tile in tiles:
                 tile.DrawOff()
 
@@ -275,12 +275,12 @@ def depth_from_buffer(buffer: np.ndarray, camera: DepthCamera, farthest: float) 
 
 
 def _plain_actor(data: vtkPolyData) -> vtkActor:
-    """Return an actor without light, colours or normals, because only its depth counts."""
+    """Return an actor without light, colours or normals, because we read its depth alone."""
     mapper = vtkPolyDataMapper()
     mapper.SetInputData(data)
     mapper.ScalarVisibilityOff()
     mapper.SetResolveCoincidentTopologyToOff()
-    # Else VTK scales the vertices by their bounding box, which one stray triangle can stretch.
+    # Without this, VTK scales the vertices by their bounding box, which one stray triangle can stretch.
     mapper.SetVBOShiftScaleMethod(_NO_SHIFT_AND_SCALE)
     actor = vtkActor()
     actor.SetMapper(mapper)
