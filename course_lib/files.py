@@ -61,7 +61,7 @@ def require_file(path: Path, what: str, error: Raised) -> None:
 
 
 def read_text(path: str | Path, what: str, error: Raised, missing: Raised | None = None) -> str:
-    """Return the text of a UTF-8 file, without a byte order mark, and with a newline for the line ends of any system."""
+    """Return the text of a UTF-8 file, without a byte order mark, with a newline for any system's line end."""
     data = read_bytes(path, what, error, MAX_TEXT, missing)
     try:
         text = data.decode("utf-8-sig")
@@ -124,7 +124,7 @@ class ImageHeader(NamedTuple):
 def read_image(
     path: str | Path, what: str, error: Raised, kinds: Sequence[str] = ("PNG", "JPEG"), missing: Raised | None = None
 ) -> np.ndarray:
-    """Return the pixels of a PNG or JPEG, at most `MAX_PIXELS`, with the channels of the file (in OpenCV's order, BGR)."""
+    """Return the pixels of a PNG or JPEG, at most `MAX_PIXELS`, with the file's channels (in OpenCV's order, BGR)."""
     import cv2
 
     data = read_bytes(path, what, error, missing=missing)
@@ -205,16 +205,16 @@ def atomic_write(path: str | Path, content: bytes | str) -> None:
     data = content.encode("utf-8") if isinstance(content, str) else content
     mode = path.stat().st_mode & 0o777 if path.exists() else 0o644
     try:
-        handle, beside = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
         try:
             with os.fdopen(handle, "wb") as file:
                 file.write(data)
                 file.flush()
                 os.fsync(file.fileno())
-            os.chmod(beside, mode)
-            os.replace(beside, path)
+            os.chmod(temporary, mode)
+            os.replace(temporary, path)
         except BaseException:
-            os.unlink(beside)
+            os.unlink(temporary)
             raise
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(path)) from error

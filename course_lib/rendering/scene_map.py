@@ -192,8 +192,8 @@ def read_mesh(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
             there = f"{len(vertices)} and {len(faces)} there"
             raise ValueError(f"{n_vertices} vertices and {n_faces} faces announced, {there}")
     except Exception as reason:  # trimesh's readers raise errors of all kinds
-        told = f"map {path} cannot be read as a mesh ({type(reason).__name__}: {reason}). Is the file complete?"
-        raise SceneMapError(told) from reason
+        reading = f"map {path} cannot be read as a mesh ({type(reason).__name__}: {reason}). Is the file complete?"
+        raise SceneMapError(reading) from reason
     return vertices, faces
 
 

@@ -1,6 +1,6 @@
-"""Do the images fit the camera's intrinsics? A wrong focal length moves the pose, and the pose hides most of it.
+"""Check whether the images fit the camera's intrinsics. A wrong focal length moves the pose, which hides most of it.
 
-Let c = (log f, cx / width, cy / height) be what has to be added to the given intrinsics. The point of a pixel,
+Let c be the correction to add to the given (log f, cx / width, cy / height). The point of a pixel,
 p = ((u - cx) z / fx, (v - cy) z / fy, z), moves with c by
 
     dp/dc = -(p_x, p_y, 0),    -(z width / fx, 0, 0),    -(0, z height / fy, 0)
@@ -24,41 +24,41 @@ from course_lib.beyond.six_dof.refinement import DAMPING, surface_normals
 from course_lib.rendering.camera import DepthCamera
 
 # Chosen on the kitchen, the rooms of a HoloLens and the shipped corridor.
-PIXELS = 4_800  # of an image that are looked at
+PIXELS = 4_800  # of an image that are used, which saves time
 PRIOR = 0.02  # standard deviation of log f, cx / width and cy / height before any image
-MAP_SIGMA = 0.004  # the same that the map's errors leave after any number of images
+MAP_SIGMA = 0.004  # their least standard deviation after any number of images, because the map has errors, too
 SIGNIFICANT = 4.0  # standard deviations by which intrinsics must be off before we doubt them
-ROUNDS = 3  # of the robust weights: a residual that the pose and c explain counts fully
+ROUNDS = 3  # of reweighting: a residual that the pose and c explain shall count fully
 
 
 class Calibration(NamedTuple):
-    """What images tell about a camera's intrinsics."""
+    """An estimate of the error of a camera's intrinsics."""
 
     correction: np.ndarray  # `(3,)` to add to the given log f, cx / width and cy / height.
     covariance: np.ndarray  # `(3, 3)` of its error.
-    images: int  # How many images told it.
+    images: int  # How many images were used.
 
     @property
     def doubted(self) -> np.ndarray:
-        """Which of the three `(3,)` are off by more than `SIGNIFICANT` standard deviations."""
+        """Return which of the three `(3,)` are off by more than `SIGNIFICANT` standard deviations."""
         return np.abs(self.correction) > SIGNIFICANT * np.sqrt(np.diag(self.covariance))
 
     def sentence(self, camera: DepthCamera) -> str | None:
-        """Return which intrinsics of the given camera the images doubt, in one sentence; None if they doubt none."""
+        """Return in one sentence which intrinsics of the given camera are doubted; None if none are."""
         size = np.array([1.0, camera.width, camera.height])
         (log_f, x, y), (sigma, *sigmas) = self.correction * size, np.sqrt(np.diag(self.covariance)) * size
         percent = f"{100 * np.expm1(log_f):+.1f} +- {100 * sigma:.1f} %"
         given = camera.fx
-        told = [f"a focal length of {given * np.exp(log_f):.0f} px better than the given {given:.0f} ({percent})"]
+        changes = [f"a focal length of {given * np.exp(log_f):.0f} px better than the given {given:.0f} ({percent})"]
         for name, off, error in zip(("cx", "cy"), (x, y), sigmas, strict=True):
             given = getattr(camera, name)
-            told.append(f"{name} = {given + off:.1f} px better than the given {given:.1f} (+- {error:.1f} px)")
-        doubts = [one for one, doubted in zip(told, self.doubted, strict=True) if doubted]
+            changes.append(f"{name} = {given + off:.1f} px better than the given {given:.1f} (+- {error:.1f} px)")
+        doubts = [change for change, doubted in zip(changes, self.doubted, strict=True) if doubted]
         return f"the images fit {' and '.join(doubts)}" if doubts else None
 
 
 class CalibrationCheck:
-    """Collects images from known poses, and says which intrinsics fit them. The images may have several sizes."""
+    """Collect images from known poses, and estimate which intrinsics fit them. The images may differ in size."""
 
     def __init__(self) -> None:
         self._information = np.eye(3) / PRIOR**2
@@ -66,7 +66,7 @@ class CalibrationCheck:
         self._images = 0
 
     def add(self, measured: np.ndarray, image: np.ndarray, camera: DepthCamera) -> None:
-        """Take an image into account. Call it only for a pose that is known.
+        """Take an image from a known pose into account.
 
         measured, image: `(H, W)` depth, of the camera and of the map from this pose.
         """
@@ -77,12 +77,12 @@ class CalibrationCheck:
         self._images += 1
 
     def estimate(self) -> Calibration:
-        """Return what the images so far tell; without any, no correction."""
+        """Return the estimate from all images until now; without any, the correction is 0."""
         covariance = np.linalg.inv(self._information)
         return Calibration(-covariance @ self._vector, covariance + MAP_SIGMA**2 * np.eye(3), self._images)
 
     def pose_covariance(self, measured: np.ndarray, image: np.ndarray, camera: DepthCamera) -> np.ndarray:
-        """Return the covariance `(6, 6)` that the intrinsics' error gives a pose, along and about the camera's axes.
+        """Return the covariance `(6, 6)` of the pose's error that wrong intrinsics cause, along and about its axes.
 
         K (c c' + P) K', with P the covariance of c. Arguments as in `add`.
         """
@@ -95,7 +95,7 @@ class CalibrationCheck:
 def _system(
     measured: np.ndarray, image: np.ndarray, camera: DepthCamera, correction: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the normal equations `(9, 9)` and `(9,)` of a pose and c, times the image's scale. Every k-th pixel."""
+    """Return the normal equations `(9, 9)`, `(9,)` of a pose and c, times the scale s, from about `PIXELS` pixels."""
     k = max(1, round(np.sqrt(measured.size / PIXELS)))
     measured, image = (np.asarray(one, dtype=np.float64)[::k, ::k] for one in (measured, image))
     seen = camera.every(k)

@@ -1,7 +1,8 @@
-"""How far off a refined pose may be: the image answers for some directions, the prediction for the others.
+"""Compute how far off a refined pose may be, from the image in some directions and from the prediction in the others.
 
-Errors of the map and the camera shift thousands of pixels at once, so an image counts as a few independent pixels. What
-it does not show keeps the prediction's variance: before a bare wall the pose would else slide on its roughness.
+Errors of the map and the camera shift thousands of pixels at once, so an image counts as a few independent pixels. A
+direction that it does not show keeps the prediction's variance. Without this, the pose would slide on the roughness of
+a bare wall.
 """
 
 from collections.abc import Sequence
@@ -15,19 +16,19 @@ from course_lib.geometry import BODY_FROM_OPTICAL, rotation_exp
 from course_lib.rendering.camera import DepthCamera
 
 # Chosen on the kitchen, the shipped corridor, and walks through rooms (seeds from 10,041 on).
-INDEPENDENT_PIXELS = 20.0
+INDEPENDENT_PIXELS = 20.0  # an image counts as so many, because its errors shift thousands of pixels at once
 SCALE = 0.05  # metres: robust scale of the residuals, as in the last steps of the refinement
 MIN_SIGMA = 0.005  # metres: no map and no camera are better
-SIGNIFICANT = 2.0  # information along a direction, in units of what roughness gives there by chance
+SIGNIFICANT = 2.0  # information along a direction, in units of the information that roughness gives there by chance
 PREDICTED = 0.4  # standard deviation of a prediction's error, as a share of the cloud's spread
-NEAR = 3.0  # root mean square of a pose's distances from another, in standard deviations, up to which they are one
+NEAR = 3.0  # standard deviations along each of six directions, on average, up to which two poses are the same
 RIVAL_SCALE = 0.02  # of raw score: a rival that is worse by this much is e times less likely
 
 
 def pose_information(measured: np.ndarray, image: np.ndarray, camera: DepthCamera) -> np.ndarray:
     """Return the inverse covariance `(6, 6)` of a pose, along and about the camera's axes, from its image alone.
 
-    measured, image: `(H, W)` depth, of the camera and of the map from this pose; `information` has the equation.
+    measured, image: `(H, W)` depth, of the camera and of the map from this pose. The equation is in `information`.
     """
     p = camera.points(measured)
     (q,), (n,) = surface_normals(image[None].astype(np.float64), camera)
@@ -42,9 +43,9 @@ def information(p: np.ndarray, n: np.ndarray, m: np.ndarray, r: np.ndarray) -> n
 
     I = N (sum w J K' + K J') / (2 sum w s^2),    s^2 = sum w r^2 / sum w
 
-    J = (n, p x n) with the normals n of the surface, K = (m, p x m) with the normals m of the measured one; roughness
-    that only one of them shows adds nothing on average. A direction u below `SIGNIFICANT` sqrt(sum (w J.u K.u)^2) has
-    information 0. N is `INDEPENDENT_PIXELS`.
+    J = (n, p x n) with the normals n of the surface, K = (m, p x m) with the normals m of the measured one. Roughness
+    that only one of the two shows adds nothing on average. A direction u whose information is below `SIGNIFICANT`
+    sqrt(sum (w J.u K.u)^2) has information 0. N is `INDEPENDENT_PIXELS`.
     """
     if not len(r):
         return np.zeros((6, 6))
@@ -73,11 +74,11 @@ def carried(covariance: np.ndarray, motion: np.ndarray) -> np.ndarray:
 def predicted_covariance(covariance: np.ndarray, motion: np.ndarray, noise: np.ndarray) -> np.ndarray:
     """Return the covariance `(6, 6)` of the predicted pose, along and about its own axes.
 
-    (1 + a) P + (1 + 1/a) Q, a^2 = mean of Q's variances over P's: covers any dependence of the two errors
+    (1 + 1/a) P + (1 + a) Q,    a^2 = mean of P_ii / Q_ii
 
-    Before a bare wall motions between images are wrong the same way frame after frame: their sum would be too sure.
-
-    P: the given covariance, carried along. noise: Q `(6, 6)`, the covariance of the motion `(6,)`.
+    P: the given covariance, carried along. noise: Q `(6, 6)`, the covariance of the motion `(6,)`. This sum covers any
+    dependence of the two errors. P + Q would be too sure: before a bare wall, motions are wrong in the same way frame
+    after frame.
     """
     before = carried(covariance, motion)
     ratio = np.sqrt(np.mean(np.diag(before) / np.diag(noise)))
@@ -87,8 +88,9 @@ def predicted_covariance(covariance: np.ndarray, motion: np.ndarray, noise: np.n
 def fused(prior: np.ndarray, information: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the covariance `(6, 6)` of prediction and image together, and the gain `(6, 6)` from prediction to image.
 
-    Along each eigenvector of L' I L (P = L L' the prior, I the image's information) the surer one alone is believed.
-    Kalman's gain would become surer with every frame, but an image's errors are mostly the map's, the same in the next.
+    Along each eigenvector of L' I L (P = L L' the prior, I the image's information) the surer of the two counts alone.
+    Kalman's gain would become surer with every frame. But an image's errors are mostly the map's, which are the same in
+    the next frame.
     """
     lower = np.linalg.cholesky(prior)
     share, directions = np.linalg.eigh(lower.T @ information @ lower)
@@ -105,7 +107,7 @@ def is_near(apart: np.ndarray, covariance: np.ndarray) -> bool:
 
 
 def with_rivals(covariance: np.ndarray, pose: np.ndarray, rivals: Sequence[Rival]) -> np.ndarray:
-    """Return the covariance `(6, 6)` about a pose `(4, 4)` if a rival, and not this pose, may be the right one.
+    """Return the covariance `(6, 6)` about a pose `(4, 4)` if one of its rivals may be the right pose instead.
 
     P + sum_k p_k d_k d_k', p_k = exp(evidence_k / RIVAL_SCALE) / 2, d: motion from the pose to the rival
     """
@@ -116,7 +118,7 @@ def with_rivals(covariance: np.ndarray, pose: np.ndarray, rivals: Sequence[Rival
 
 
 def in_world_and_body(covariance: np.ndarray, pose: np.ndarray) -> np.ndarray:
-    """Return a covariance `(6, 6)` of the camera's axes in metres along the world's and radians about the body's."""
+    """Return a covariance `(6, 6)` along and about the camera's axes along the world's and about the body's axes."""
     turn = np.zeros((6, 6))
     turn[:3, :3] = pose[:3, :3]
     turn[3:, 3:] = BODY_FROM_OPTICAL

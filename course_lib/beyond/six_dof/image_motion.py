@@ -1,13 +1,13 @@
-"""How the camera moved between two depth images, from the images themselves; no map takes part.
+"""Measure how the camera moved between two depth images, from the images alone, without a map.
 
-A point p of the present image lies on the surface that the image before shows. Motion T puts it to g = T p, which falls
-on a pixel of the image before, with point q and normal n there. If T is right,
+A point p of the present image lies on the surface that the image before shows. The motion T moves it to g = T p, which
+falls on a pixel of the image before, with point q and normal n. If T is right,
 
     r_j = n_j . (T p_j - q_j) = 0,    J_j = (R' n_j, p_j x R' n_j)
 
 Gauss-Newton (refinement.py) solves this from several starts, coarse images first, because a camera carried by hand may
-turn by half of its field of view from one frame to the next. This is projective
-point-to-plane ICP (Blais and Levine 1995).
+turn by half of its field of view from one frame to the next. This is projective point-to-plane ICP (Blais and Levine
+1995).
 """
 
 from collections.abc import Sequence
@@ -24,22 +24,22 @@ from course_lib.beyond.six_dof.schedule import COARSE, MIDDLE
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.compiled import compiled
 
-# All chosen on the kitchen, the walk through rooms and walks of the demo (seeds from 10,041 on).
-# Where the search starts from: these turns about the optical axes, radians, each after these steps, metres.
+# Chosen on the kitchen, the walk through rooms and walks of the demo (seeds from 10,041 on).
+# The search starts from each of these turns about the optical axes, radians, after each of these steps, metres.
 TURNS = np.deg2rad([[0, 0, 0], [0, 14, 0], [0, -14, 0], [0, 28, 0], [0, -28, 0], [14, 0, 0], [-14, 0, 0]])
 STEPS = np.array([[0, 0, 0], [0.2, 0, 0], [-0.2, 0, 0], [0, 0, 0.2]])
-COARSE_SCALES = (0.3, 0.2, 0.15, 0.1, 0.1, 0.07)  # metres, of the robust weights: a step each
-FINE_SCALES = (0.07, 0.05, 0.05, 0.03, 0.03)
-PIXELS = 5.0  # times as many of them are independent as before a map, whose errors two images do not share
-FLOOR = np.array([0.008, np.deg2rad(0.25)])  # metres, radians: the camera's errors leave so much
+COARSE_SCALES = (0.3, 0.2, 0.15, 0.1, 0.1, 0.07)  # metres, of the robust weights: one Gauss-Newton step for each
+FINE_SCALES = (0.07, 0.05, 0.05, 0.03, 0.03)  # the same on the finer images
+PIXELS = 5.0  # times as many pixels are independent as before a map, because the map's errors play no part
+FLOOR = np.array([0.008, np.deg2rad(0.25)])  # metres, radians: the least error, which the camera's own errors cause
 KEPT = 3  # motions that go from the coarse images to the finer ones
-APART = np.array([0.04, np.deg2rad(3.0)])  # metres, radians: two motions that differ
-MIN_PAIRED = 0.25  # share of the measured pixels that fall on the image before
-MIN_AGREEING = 0.7  # mean weight of these pixels
-CLEARLY = 0.05  # of score: what the motion may lose where it is kept along what the images do not show
-EXPECTED = 0.004  # of score: what one unit of the guess's log density is worth
-FARTHEST = 25.0  # squared distance from the guess, in units of its spread, beyond which no motion is less likely
-UNPAIRED = 0.1  # what a pixel that falls beside the image before costs, as a share of one that disagrees
+APART = np.array([0.04, np.deg2rad(3.0)])  # metres, radians: two motions that are nearer are the same
+MIN_PAIRED = 0.25  # of points that fall on the image before, at least, for a motion that is believed
+MIN_AGREEING = 0.7  # mean weight of these points, at least, for a motion that is believed
+CLEARLY = 0.05  # of score: the most that a motion may lose when it is kept along what the images do not show
+EXPECTED = 0.004  # of score for one unit of the guess's log density: it decides between motions that fit alike
+FARTHEST = 25.0  # squared distance from the guess, in units of its spread, at which the penalty stops growing
+UNPAIRED = 0.1  # the cost of a point that misses the image before, as a share of the cost of one that disagrees
 
 
 class View(NamedTuple):
@@ -47,7 +47,7 @@ class View(NamedTuple):
 
     camera: DepthCamera
     points: np.ndarray  # `(H, W, 3)`, NaN = no measurement.
-    normals: np.ndarray  # `(H, W, 3)`, NaN also beside an edge.
+    normals: np.ndarray  # `(H, W, 3)`, NaN also next to an edge.
 
     @classmethod
     def of(cls, depth: np.ndarray, camera: DepthCamera, pixels: int) -> "View":
@@ -70,9 +70,10 @@ def views_of(depth: np.ndarray, camera: DepthCamera) -> list[View]:
 
 
 def paired(before: View, points: np.ndarray, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return of points `(M, 3)` which have a partner `(M,)`, and for these the normals `(K, 3)` and residuals `(K,)`.
+    """Return which points `(M, 3)` have a partner `(M,)`, and the normals `(K, 3)` and residuals `(K,)` of these.
 
-    pose: `(4, 4)`, the present camera in the frame of the one before. Normals in the present camera's axes, metres.
+    pose: `(4, 4)` of the present camera in the frame of the one before. Normals are along the present camera's axes,
+    residuals in metres.
     """
     moved = points @ pose[:3, :3].T + pose[:3, 3]
     with np.errstate(invalid="ignore"):
@@ -153,10 +154,10 @@ def image_motion(
 ) -> MeasuredMotion | None:
     """Return the motion between two frames, or None where it is not to be believed.
 
-    before, now: a coarse and a finer view each. guess: motion `(6,)` to start from, beside `STEPS` and `TURNS`; along
-    what the images do not show it is kept, with its standard deviations `spread` `(6,)`. The result is believed if
-    enough pixels fall on the image before and agree with it. Another motion that explains the images nearly as well
-    widens the covariance (`with_rivals`), if it does not lie far from the guess.
+    before, now: a coarse and a finer view each (`views_of`). guess: a motion `(6,)` with standard deviations `spread`
+    `(6,)`. The search starts from it, and from all `STEPS` and `TURNS`. Along directions that the images do not show,
+    the result is the guess. The result is believed if enough points fall on the image before and agree with it. Another
+    motion that explains the images nearly as well widens the covariance (`with_rivals`), if it is near the guess.
     """
     starts = np.concatenate([np.repeat(STEPS, len(TURNS), axis=0), np.tile(TURNS, (len(STEPS), 1))], axis=1)
     predicted = retract(np.eye(4), guess)
@@ -187,7 +188,7 @@ def image_motion(
 
 
 def _scores(before: View, points: np.ndarray, poses: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return scores `(N,)` of motions, at most 1, the share of points that pair, and the mean weight of these."""
+    """Return the scores `(N,)` of motions, at most 1, the share of points that pair, and their mean weight."""
     system, pairs = compiled_motion_equations(before, points, poses, SCALE)
     score = system.weights / (pairs + UNPAIRED * (len(points) - pairs))
     return score, pairs / len(points), system.weights / np.maximum(pairs, 1)

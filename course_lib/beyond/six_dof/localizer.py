@@ -70,7 +70,7 @@ from course_lib.rendering.renderer import DepthRenderer
 SURE = np.array([0.06, np.deg2rad(3.0)])  # metres, radians: a cloud so small needs few particles
 NOTHING_BEHIND = 0.01  # share of pixels behind the map: with at most this, a pose that the motion confirms is settled
 CLEAR = 0.05  # share of pixels behind the map: with more, the camera may as well be where it was predicted
-SEEN = 0.06  # of raw score: more than this no move along directions that the image does not show may cost
+SEEN = 0.06  # of raw score: the most that a move along directions that the image does not show may cost
 IMAGE_FIRST = 4  # times the image's information moves the pose: motions' errors add up, the map's errors do not
 CHECKED = 3  # every third tracked frame checks the intrinsics, which saves time
 
@@ -198,12 +198,12 @@ class AnnealedLocalizer:
         self._pose, self._covariance, self._views = found.pose, covariance, views
         return self._estimate(found, status, error_covariance)
 
-    def _measured_motion(self, views: list[View], told: MeasuredMotion | None) -> MeasuredMotion | None:
+    def _measured_motion(self, views: list[View], odometer: MeasuredMotion | None) -> MeasuredMotion | None:
         """Return the motion since the last image, from both images and the odometer if there is one."""
         if self._views is None or not self.image_motion:
-            return told
-        if told is not None:
-            return image_motion(self._views, views, told.motion, self._prediction.spread(told)) or told
+            return odometer
+        if odometer is not None:
+            return image_motion(self._views, views, odometer.motion, self._prediction.spread(odometer)) or odometer
         return image_motion(self._views, views, self._prediction.motion, self._prediction.guess_spread())
 
     def _look_twice(self, expected: Cloud) -> tuple[Found, Cloud]:

@@ -1,4 +1,4 @@
-"""Camera poses and small motions between them: `retract`, `local`, and which of many poses are distinct.
+"""Compute with camera poses and small motions between them: `retract`, `local`, and which poses are distinct.
 
 A motion `(..., 6)` is a translation along the camera's own axes in metres, then a rotation vector about these axes
 (axis times angle, radians). It lives in the tangent space of the pose, which has no gimbal lock.
@@ -8,7 +8,7 @@ import numpy as np
 
 from course_lib.geometry import BODY_FROM_OPTICAL, as_states, pose_matrix, rotation_exp, rotation_log
 
-MAX_INCREMENT = np.array([2.0, np.pi])  # metres, radians between two frames: a longer one has another unit (chosen)
+MAX_INCREMENT = np.array([2.0, np.pi])  # metres, radians between two frames: a longer one is in other units (chosen)
 
 
 def retract(poses: np.ndarray, motions: np.ndarray) -> np.ndarray:
@@ -36,7 +36,7 @@ def lengths(motions: np.ndarray) -> np.ndarray:
 
 
 def motion_between(state_a: np.ndarray, state_b: np.ndarray) -> np.ndarray:
-    """Return the motion `(..., 6)` from state a to state b: what an odometer tells `AnnealedLocalizer.step`.
+    """Return the motion `(..., 6)` from state a to state b, as an odometer gives it to `AnnealedLocalizer.step`.
 
     (R_a' (t_b - t_a), log R_a' R_b), along and about the *body's* axes at a (x forward, y left, z up), metres and
     radians. state_a, state_b: `(..., 6)`. Raises `ValueError` for another shape, or values that are not finite.
@@ -45,7 +45,7 @@ def motion_between(state_a: np.ndarray, state_b: np.ndarray) -> np.ndarray:
 
 
 def optical_increment(increment: np.ndarray) -> np.ndarray:
-    """Return an increment `(6,)` along and about the body's axes, checked, along and about the optical axes.
+    """Check an increment `(6,)` along and about the body's axes, and return it along and about the optical axes.
 
     Raises `ValueError` for another shape, values that are not finite, or more than `MAX_INCREMENT`.
     """

@@ -1,9 +1,9 @@
-"""Where the camera may be when the next image comes: as it has moved before, or as a measured motion says.
+"""Predict where the camera may be at the next image, from its last motions or from a measured motion.
 
-If nobody measured the motion, the last one goes on, in a cloud as wide as recent motions were long. An odometer or two
-images (image_motion.py) measure it: most of the cloud lies there, as wide as its covariance, and a share goes on as
-before, because a measured motion may be wrong. If another pose explained the last frame nearly as well, the cloud also
-starts from this rival.
+Without a measured motion, the last motion is repeated, in a cloud that is as wide as recent motions were long. An
+odometer or two images (image_motion.py) may measure the motion. Then most of the cloud lies there, as wide as the
+motion's covariance, and a share repeats the last motion, because a measured motion may be wrong. If another pose
+explained the last frame nearly as well, the cloud starts from this rival, too.
 """
 
 from collections.abc import Sequence
@@ -13,23 +13,23 @@ import numpy as np
 
 from course_lib.beyond.six_dof.poses import lengths, local, retract
 
-# All chosen on the kitchen and the shipped corridor; those of rivals on walks through rooms, seeds 10,041 to 10,066.
+# Chosen on the kitchen and the shipped corridor; those of rivals on walks through rooms, seeds 10,041 to 10,066.
 MIN_SPREAD = np.array([0.015, np.deg2rad(1.0)])  # metres, radians: of a camera at rest
-MAX_SPREAD = np.array([0.5, np.deg2rad(30.0)])
-START_SPREAD = np.array([0.2, np.deg2rad(10.0)])  # of a start that was set by hand, before a motion was seen
-SPREAD_OF_MOTION = 1.2  # spread of the cloud as a share of the longest of the last motions
-SPREAD_OF_INCREMENT = 0.3  # the same share of an odometer's increment
-FRAMES_REMEMBERED = 3
-GUESSES_REMEMBERED = 6  # motions that tell how well the last one foretold the next
+MAX_SPREAD = np.array([0.5, np.deg2rad(30.0)])  # metres, radians: no cloud is wider
+START_SPREAD = np.array([0.2, np.deg2rad(10.0)])  # metres, radians: the error of a start that was set by hand
+SPREAD_OF_MOTION = 1.2  # of the longest recent motion: the next one may be longer
+SPREAD_OF_INCREMENT = 0.3  # of an odometer's increment: standard deviation of its error
+FRAMES_REMEMBERED = 3  # recent motions, the longest of which sets the spread
+GUESSES_REMEMBERED = 6  # recent motions that show how well each one predicted the next
 GOES_ON = (-0.25, 1.25)  # smallest and largest share of the last motion that the next one may repeat
-HEAVY_TAIL = 0.5  # of the logarithm of each particle's own spread: most are near, a few are far
-WIDER = 2.5  # the spread of a second look at a frame, as a share of the first look's
-PRIOR_SHARE = 0.002  # what one unit of the prediction's log density is worth in score: it decides between equals
-MEASURED_SHARE = 0.005  # the same of a measured motion: it decides between places that fit nearly as well
-CARRIED = 0.7  # share of a rival's evidence that goes on to the next frame
-UNMEASURED = 4  # every so many particles go on as before, although the motion was measured
-FARTHEST = 25.0  # squared distance from a measured motion, in units of the spread, beyond which none is less likely
-GROWTH = 1.5  # of the spread, for every frame in which the camera was not found
+HEAVY_TAIL = 0.5  # standard deviation of the logarithm of each particle's spread: most are near, a few are far
+WIDER = 2.5  # spread of a second search of a frame, as a share of the first one's
+PRIOR_SHARE = 0.002  # of score for one unit of the prediction's log density: it decides between poses that fit alike
+MEASURED_SHARE = 0.005  # the same for a measured motion: it decides between poses that fit nearly alike
+CARRIED = 0.7  # share of a rival's evidence that is kept in the next frame, so that old evidence fades
+UNMEASURED = 4  # one pair of particles in four repeats the last motion, because a measured motion may be wrong
+FARTHEST = 25.0  # squared distance from a measured motion, in units of the spread, at which the penalty stops growing
+GROWTH = 1.5  # times as wide is the cloud after every frame in which the camera was not found
 
 
 class Rival(NamedTuple):
@@ -40,20 +40,20 @@ class Rival(NamedTuple):
 
 
 class MeasuredMotion(NamedTuple):
-    """A motion since the frame before, as an odometer or two images tell it."""
+    """A motion since the frame before, measured by an odometer or by two images."""
 
     motion: np.ndarray  # `(6,)` metres, radians, along and about the optical axes of the frame before (`retract`).
     covariance: np.ndarray  # `(6, 6)` of the pose that it leads to, along and about that pose's axes.
 
     @classmethod
     def of_odometer(cls, increment: np.ndarray) -> "MeasuredMotion":
-        """Return the motion of an increment `(6,)`; standard deviations: `SPREAD_OF_INCREMENT` of its lengths."""
+        """Return the motion of an increment `(6,)`, with `SPREAD_OF_INCREMENT` of its lengths as its errors."""
         sigma = np.maximum(SPREAD_OF_INCREMENT * lengths(increment), MIN_SPREAD)
         return cls(increment, np.diag(np.repeat(sigma, 3) ** 2))
 
 
 class MotionPrediction:
-    """The camera's last pose (camera-to-world `(4, 4)`, optical), its motion, and how long the last motions were."""
+    """Hold the camera's last pose (camera-to-world `(4, 4)`, optical), its last motions, and predict the next pose."""
 
     def __init__(self, pose: np.ndarray) -> None:
         self.pose = np.array(pose, dtype=np.float64)
@@ -61,10 +61,10 @@ class MotionPrediction:
         self.motion = np.zeros(6)
         self._started = self._not_found = False
         self._lengths: list[np.ndarray] = []
-        self._surprises: list[np.ndarray] = []  # how far motions were from the motions before them
+        self._surprises: list[np.ndarray] = []  # how much each motion differed from the motion before it
 
     def spread(self, measured: MeasuredMotion | None = None) -> np.ndarray:
-        """Return standard deviations `(6,)` of the next pose about its prediction, metres and radians, camera axes."""
+        """Return the standard deviations `(6,)` of the next pose about its prediction: metres, radians, camera axes."""
         least, most = np.repeat(MIN_SPREAD, 3), np.repeat(MAX_SPREAD, 3)
         if measured is not None:
             return np.clip(np.sqrt(np.diag(measured.covariance)), least, most)
@@ -74,7 +74,7 @@ class MotionPrediction:
         return np.clip(np.repeat(longest, 3), least, most)
 
     def guess_spread(self) -> np.ndarray:
-        """Return standard deviations `(6,)` of the next motion about the last one, as far as it has gone on so far."""
+        """Return the standard deviations `(6,)` of the next motion about the last one, from the recent differences."""
         if len(self._surprises) < GUESSES_REMEMBERED:
             return self.spread()
         off = np.repeat(np.max(self._surprises[-GUESSES_REMEMBERED:], axis=0), 3)
@@ -83,9 +83,10 @@ class MotionPrediction:
     def draw(
         self, n: int, spread: np.ndarray, rng: np.random.Generator, measured: MeasuredMotion | None = None
     ) -> np.ndarray:
-        """Draw poses `(n, 4, 4)` where the camera may be now. If there are rivals, half of the poses start from them.
+        """Sample poses `(n, 4, 4)` where the camera may be now. If there are rivals, half of the poses start from them.
 
-        The first two poses have no noise: one at rest, one going on; with a measured motion, both there. spread: `(6,)`
+        spread: `(6,)` standard deviations. The first two poses have no noise: one is at rest, and one repeats the last
+        motion. If the motion was measured, both are where it leads.
         """
         starts = np.tile(self.pose, (n, 1, 1))
         for k, rival in enumerate(self.rivals):
@@ -101,18 +102,20 @@ class MotionPrediction:
         return retract(retract(starts, motions), wide * noise)
 
     def preference(self, poses: np.ndarray, spread: np.ndarray, measured: MeasuredMotion | None = None) -> np.ndarray:
-        """Return what the prediction says of poses `(N, 4, 4)`, in units of the raw score: `(N,)`, at most 0.
+        """Return how likely the prediction makes poses `(N, 4, 4)`, in units of the raw score: `(N,)`, at most 0.
 
-        max_k PRIOR_SHARE (-d_k^2 / 2) + CARRIED evidence_k, over the last pose and its rivals k; d: distance from the
-        nearest motion between rest and going on, in units of the spread. With a measured motion, d is the distance from
-        it, d^2 <= `FARTHEST`, and MEASURED_SHARE stands for PRIOR_SHARE.
+        max_k PRIOR_SHARE (-d_k^2 / 2) + CARRIED evidence_k
+
+        k runs over the last pose and its rivals. d_k is the distance, in units of the spread `(6,)`, from the nearest
+        motion between rest and the last motion. If the motion was measured, d_k is the distance from it, d_k^2 is at
+        most `FARTHEST`, and MEASURED_SHARE replaces PRIOR_SHARE.
         """
         return np.max([preference for preference, _ in self._ways(poses, spread, measured)], axis=0)
 
     def origin(
         self, pose: np.ndarray, spread: np.ndarray, measured: MeasuredMotion | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the pose that the camera came from if it is now at `pose`, and the pose predicted from there."""
+        """Return where the camera most likely came from if it is now at `pose`, and the pose predicted from there."""
         ways = self._ways(pose[None], spread, measured)
         likeliest = max(range(len(ways)), key=lambda k: ways[k][0][0])
         return self._last_poses()[likeliest].pose, ways[likeliest][1][0]
@@ -141,7 +144,7 @@ class MotionPrediction:
         return ways
 
     def found(self, pose: np.ndarray, seen: bool = True, rivals: Sequence[Rival] = ()) -> None:
-        """Tell that the camera is at `pose`. seen: False if the image leaves a direction open: no length is learned."""
+        """Go on from `pose` `(4, 4)`. seen: whether the image shows all directions, so that the motion is learned."""
         if self._started:
             before = min(self._last_poses(), key=lambda last: float(np.linalg.norm(local(last.pose, pose))))
             expected, self.motion = retract(before.pose, self.motion), local(before.pose, pose)
@@ -154,9 +157,9 @@ class MotionPrediction:
     def not_found(
         self, pose: np.ndarray, spread: np.ndarray, rivals: Sequence[Rival] = (), measured: MeasuredMotion | None = None
     ) -> None:
-        """Tell that the camera may be at `pose`, at a rival, or where the measured motion led from its last pose.
+        """Go on from `pose`, from each rival, and from where the measured motion led from the last pose.
 
-        spread: `(6,)` of this cloud.
+        spread: `(6,)` standard deviations of the cloud of this frame. The next cloud is `GROWTH` times as wide.
         """
         if measured is not None:
             self.pose = retract(self.pose, measured.motion)

@@ -1,12 +1,12 @@
-"""From a pose near the right one to the right one: Gauss-Newton on the rendered depth.
+"""Move a pose near the right one to the right one, by Gauss-Newton on the rendered depth.
 
-The map rendered from a pose is a depth image, so every pixel holds a point q of the map and, from its neighbours, the
-surface's normal n. The same pixel of the camera holds a measured point p. If the pose is right, p lies on that surface:
+The map rendered from a pose is a depth image. So every pixel has a point q of the map and, from its neighbours, the
+surface's normal n. The same pixel of the camera has a measured point p. If the pose is right, p lies on that surface:
 
     r_j = n_j . (p_j - q_j) = 0
 
 A small motion (v, w) of the camera moves p to p + v + w x p, and it changes r_j to first order by n . v + (p x n) . w.
-With a robust rho, because doors stand open and people walk by, the motion of the smallest sum_j rho(r_j) solves
+Doors stand open and people walk by, so we need a robust rho. The motion of the smallest sum_j rho(r_j) solves
 
     (sum_j w_j J_j J_j') (v, w) = - sum_j w_j J_j r_j,    J_j = (n_j, p_j x n_j)
 
@@ -23,10 +23,10 @@ from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.compiled import compiled
 from course_lib.rendering.renderer import DepthRenderer
 
-# Neighbours on one surface differ in depth by at most this share for every radian between their rays (chosen: a surface
-# seen under less than about 7 degrees of grazing gives no normal).
+# Neighbours on one surface differ in depth by at most this share for every radian between their rays. Chosen: a surface
+# seen under less than about 7 degrees of grazing has no normal then.
 EDGE_PER_RADIAN = 8.0
-DAMPING = 1e-4  # added to the mean of J J': along what the image does not show, the pose stays where it is (chosen)
+DAMPING = 1e-4  # added to the mean of J J', so that the pose stays along what the image does not show (chosen)
 LONGEST_STEP = (0.2, 0.3)  # metres, radians: the first order is not valid beyond them (chosen)
 
 
@@ -41,7 +41,7 @@ class NormalEquations(NamedTuple):
 def surface_normals(images: np.ndarray, camera: DepthCamera) -> tuple[np.ndarray, np.ndarray]:
     """Return points `(N, H, W, 3)` of depth images `(N, H, W)` in the optical frame, and the unit normals there.
 
-    n ~ (q_right - q_left) x (q_below - q_above); NaN on the image's border, at a miss, and beside an edge.
+    n ~ (q_right - q_left) x (q_below - q_above); NaN on the image's border, at a miss, and next to an edge.
     """
     points = camera.rays() * np.where(np.isfinite(images), images, np.nan)[..., None]
     normals = np.full(points.shape, np.nan)
@@ -109,7 +109,7 @@ def _sums(points, images, rays, scale, edge):
                 left, right = np.float64(image[y, x - 1]), np.float64(image[y, x + 1])
                 above, below = np.float64(image[y - 1, x]), np.float64(image[y + 1, x])
                 limit = edge * depth
-                # Comparisons with NaN and with inf - inf are false: what is no number takes no part.
+                # Comparisons with NaN and with inf - inf are false, so such pixels take no part.
                 if not (pz > 0 and depth < np.inf):
                     continue
                 if not (abs(left - depth) <= limit and abs(right - depth) <= limit):

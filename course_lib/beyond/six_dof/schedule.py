@@ -1,4 +1,4 @@
-"""How a frame is searched: on images of which size, in which layers of particles, by which steps of refinement."""
+"""Set how a frame is searched: the sizes of its images, the layers of particles, and the steps of refinement."""
 
 from typing import Literal, NamedTuple
 
@@ -10,12 +10,13 @@ from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.sensor import subsample_depth
 
-# Pixels of the coarse, the middle and the fine image, if the camera has as many (chosen).
+# Pixels of the coarse, the middle and the fine image, if the camera has as many. Chosen: many particles need small
+# images, and the last steps use all 25,344 pixels of the SR4000.
 COARSE, MIDDLE, FINE = 1_200, 4_800, 25_600
 
 
 class Level:
-    """One size of image: its renderer, the measured image, and how many images were drawn since it was measured."""
+    """Hold the renderer of one image size, the measured image, and how many images were rendered since."""
 
     def __init__(self, renderer: DepthRenderer, camera: DepthCamera, weighting: Weighting) -> None:
         self.renderer = renderer
@@ -25,7 +26,7 @@ class Level:
         self.measured = np.full(renderer.camera.shape, np.nan, dtype=np.float32)
 
     def measure(self, depth: np.ndarray) -> None:
-        """Take the camera's image `(H, W)`; eq. (7) on this level's pixels."""
+        """Take the camera's image `(H, W)`, NaN = no measurement: eq. (7) on this level's pixels."""
         camera, self.renders = self.renderer.camera, 0
         self.measured = self.renderer.render_points(camera.points(subsample_depth(depth, self._full_camera, camera)))
 
@@ -39,7 +40,7 @@ class Level:
         return self._weighting.score(self.measured, images)
 
     def step(self, poses: np.ndarray, images: np.ndarray, scale: float) -> np.ndarray:
-        """Return poses `(N, 4, 4)`, from which `images` were drawn, after a Gauss-Newton step; scale in metres."""
+        """Return poses `(N, 4, 4)` after a Gauss-Newton step. images: of the map from these poses. scale: metres."""
         return gauss_newton_step(self.measured, images, self.renderer.camera, poses, scale)
 
 
@@ -58,7 +59,7 @@ def pyramid(renderer: DepthRenderer) -> list[Level]:
 
 
 class Layer(NamedTuple):
-    """One round of drawing, weighing and resampling within a frame, on coarse images."""
+    """Settings of one round of sampling and weighing within a frame, on coarse images."""
 
     particles: float  # Number of particles, as a share of the filter's `n_particles`.
     spread: float  # Standard deviation of the noise, as a share of the prediction's spread.
@@ -66,14 +67,15 @@ class Layer(NamedTuple):
 
 
 class Step(NamedTuple):
-    """One Gauss-Newton step for the poses that are left."""
+    """Settings of one Gauss-Newton step for the poses that are left."""
 
     level: Literal[0, 1, 2]  # Index into the pyramid: coarse, middle, fine.
     scale: float  # Metres: a residual of this size counts a quarter.
     hypotheses: int  # How many poses are kept, the best that differ.
 
 
-# All chosen on the kitchen and the shipped corridor.
+# Chosen on the kitchen and the shipped corridor. Particles become fewer as the cloud shrinks. Poses become fewer, the
+# images finer, and the scales smaller as the poses come closer to the right one.
 LAYERS = (Layer(1.0, 1.0, 0.1), Layer(0.4, 0.35, 0.1))
 SURE_LAYERS = (Layer(0.3, 1.0, 0.1),)
 SECOND_LOOK = (Layer(0.45, 1.0, 0.1),)
