@@ -36,6 +36,14 @@ def test_points_project_back_onto_their_pixels_and_resizing_keeps_the_image_edge
         assert (left, right, top, bottom) == pytest.approx(edges)
 
 
+@pytest.mark.parametrize("k", [1, 2, 5])
+def test_every_kth_row_and_column_keeps_its_ray(k):
+    for camera in (SMALL, OFF_CENTRE):
+        thinned = camera.every(k)
+        assert thinned.rays() == pytest.approx(camera.rays()[::k, ::k])
+        assert (thinned.near, thinned.far) == (camera.near, camera.far)
+
+
 def test_the_projection_matrix_puts_pixel_centres_and_planes_where_opengl_looks_for_them():
     camera = OFF_CENTRE
     for u, v, z in ((0, 0, camera.near), (camera.width - 1, camera.height - 1, camera.far)):

@@ -176,9 +176,10 @@ class AnnealedLocalizer:
             measured = self._measured_motion(views, measured)
             found, cloud = self._look_twice(Cloud(prediction, prediction.spread(measured), measured))
             decision = self._decide(found, cloud)
-            found, covariance = decision.found, decision.covariance
-            status = self._judge.judge(decision.image_says, found.agreement, covariance, bool(found.rivals))
-            error_covariance = self._calibrated(covariance, found.pose, status)
+            status = self._judge.judge(
+                decision.image_says, decision.found.agreement, decision.covariance, bool(decision.found.rivals)
+            )
+            error_covariance = self._calibrated(decision, status)
         else:
             warnings.warn(
                 "this frame holds no measurement between the camera's near and far planes; the pose is predicted only",
@@ -189,13 +190,13 @@ class AnnealedLocalizer:
             views = self._views if measured is None else None
             cloud = Cloud(prediction, prediction.spread(measured), measured)
             decision = self._predicted_only(cloud)
-            found, covariance = decision.found, decision.covariance
-            status, error_covariance = "no measurement", covariance
+            status, error_covariance = "no measurement", decision.covariance
+        found = decision.found
         if decision.is_found:
             prediction.found(found.pose, decision.shows_all, found.rivals)
         else:
             prediction.not_found(found.pose, cloud.spread, found.rivals, measured)
-        self._pose, self._covariance, self._views = found.pose, covariance, views
+        self._pose, self._covariance, self._views = found.pose, decision.covariance, views
         return self._estimate(found, status, error_covariance)
 
     def _measured_motion(self, views: list[View], odometer: MeasuredMotion | None) -> MeasuredMotion | None:
@@ -290,7 +291,7 @@ class AnnealedLocalizer:
         found = Found(pose, np.nan, NOTHING_MEASURED, particles, layers, ())
         return Decision(found, covariance, "doubtful", False, False)
 
-    def _calibrated(self, covariance: np.ndarray, pose: np.ndarray, status: TrackStatus) -> np.ndarray:
+    def _calibrated(self, decision: Decision, status: TrackStatus) -> np.ndarray:
         """Return the covariance `(6, 6)`, wider where the intrinsics are doubted; check them with some tracked frames.
 
         The wider covariance is not kept, because this error is the same in the next frame.
@@ -299,12 +300,14 @@ class AnnealedLocalizer:
         is_checked = status == "tracked" and self._tracked % CHECKED == 0
         is_doubted = self._calibration.estimate().doubted.any()
         if not (is_checked or is_doubted):
-            return covariance
+            return decision.covariance
         middle = self.levels[1]
-        images = middle.measured, middle.draw(pose[None])[0], middle.renderer.camera
+        images = middle.measured, middle.draw(decision.found.pose[None])[0], middle.renderer.camera
         if is_checked:
             self._calibration.add(*images)
-        return covariance + self._calibration.pose_covariance(*images) if is_doubted else covariance
+        if not is_doubted:
+            return decision.covariance
+        return decision.covariance + self._calibration.pose_covariance(*images)
 
     def _estimate(self, found: Found, status: str, error_covariance: np.ndarray) -> AnnealedEstimate:
         state, particles = state_from_optical_pose(found.pose), state_from_optical_pose(found.particles)
