@@ -45,7 +45,7 @@ def simplified(scene_map: SceneMap) -> SceneMap:
 def _simplify(
     scene_map: SceneMap, tolerance: float, within_percent: int, quadric_errors: tuple[float, ...], vtk_version: str
 ) -> SceneMap:
-    """Merge more and more edges, as long as the map stays within the tolerance. Its arguments are the cache's key."""
+    """Merge more and more edges, as long as the map stays within the tolerance (all arguments name what is kept)."""
     left = _welded(scene_map)
     stride = max(1, len(scene_map.vertices) // _CHECKED_VERTICES)
     checked = (scene_map.vertices - scene_map.origin)[np.unique(scene_map.faces)[::stride]]

@@ -42,7 +42,7 @@ def test_an_increment_is_along_and_about_the_body_s_axes():
 
 
 @pytest.mark.parametrize(
-    ("increment", "told"),
+    ("increment", "message"),
     [
         (np.eye(4), r"shape \(4, 4\)"),
         (np.zeros(3), r"shape \(3,\)"),
@@ -52,6 +52,6 @@ def test_an_increment_is_along_and_about_the_body_s_axes():
         (np.array([0.1, 0, 0, 0, 0, 20.0]), "20 rad"),
     ],
 )
-def test_what_is_no_increment_is_told_with_shape_and_unit(increment, told):
-    with pytest.raises(ValueError, match=told):
+def test_a_wrong_increment_is_refused_with_shape_and_unit(increment, message):
+    with pytest.raises(ValueError, match=message):
         optical_increment(increment)
