@@ -161,7 +161,7 @@ class AnnealedLocalizer:
 
         increment: motion `(6,)` since the last frame by an odometer or an IMU, along and about the body's axes at that
         frame (x forward, y left, z up), metres and radians; `motion_between` gives it from two states. Raises
-        `ValueError` for another, before anything changes. A frame without any measurement warns
+        `ValueError` for a wrong one, before anything changes. A frame without any measurement warns
         (`NoMeasurementWarning`), and its state is the prediction.
         """
         prediction = self._prediction
