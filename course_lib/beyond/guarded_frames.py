@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.being_lost import MIN_PIXELS
+from course_lib.depth_mcl.status import MIN_PIXELS
 
 Fault = Literal[
     "out of order", "repeated", "no return", "saturated", "noise", "half covered", "few returns", "exposure jump"

@@ -88,6 +88,12 @@ class DepthSequence:
             self, **{name: None if value is None else value[kept] for name, value in values.items()}
         )
 
+    @property
+    def period(self) -> float | None:
+        """Return the median seconds from frame to frame; None where the times are not known, or do not ascend."""
+        steps = [] if self.times is None else np.diff(self.times)
+        return float(np.median(steps)) if len(steps) and np.median(steps) > 0 else None
+
     def camera(self, near: float = NEAR, far: float = FAR) -> DepthCamera:
         """The depth camera that made the recording; near, far: its clip planes, metres."""
         height, width = self.image_shape

@@ -4,19 +4,19 @@ A run gives plain lists, one entry a frame, so that runs of several seeds, recor
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from course_lib.beyond.being_lost import agreement, judge_refined
+from course_lib.beyond.being_lost import judge_refined
 from course_lib.beyond.six_dof.prediction import MotionPrediction, Rival
 from course_lib.beyond.six_dof.refinement import refine
 from course_lib.beyond.six_dof.schedule import LAYERS, STEPS, pyramid
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
+from course_lib.depth_mcl.status import agreement
 from course_lib.files import temporary_folder
-from course_lib.recordings import SIGMA, Run, run_annealed, run_recovering, run_sequence, system_noise
+from course_lib.recordings import SIGMA, run_sequence, system_noise
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 from courseware.experiments.runner import Outcome, Runner
@@ -76,13 +76,9 @@ def run_frames(
     """Errors, statuses and renders of every frame of a recording; of `METHODS` or `ABLATIONS`; "floor" has no seed."""
     if method == "floor":
         return floor_frames(scene_map, sequence, progress)
-    if method == "paper":
-        localized = partial(run_sequence, **system_noise("6", *SIGMA["6"]))
-    elif method == "recovering":
-        localized = run_recovering
-    else:
-        localized = partial(run_annealed, parts=ABLATIONS.get(method, {}))
-    run: Run = localized(scene_map, sequence, seed=seed, progress=progress)
+    parts = ABLATIONS.get(method, {}) if method != "paper" else system_noise("6", *SIGMA["6"])
+    name = "annealed" if method in ABLATIONS else method
+    run = run_sequence(scene_map, sequence, name, seed=seed, progress=progress, **parts)
     position, rotation = pose_errors(run.camera_to_world, sequence.camera_to_world[: len(run.frames)])
     return {
         "position_m": position.tolist(),

@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.being_lost import REFINED_LOST, agreement
+from course_lib.beyond.being_lost import REFINED_LOST
 from course_lib.beyond.lost_and_found.free_space import FreeSpace
 from course_lib.beyond.lost_and_found.image_gravity import UNKNOWN_TILT_SIGMA, down_from_image, is_upright
 from course_lib.beyond.lost_and_found.stored_views import MAX_PLACES, StoredViews, look_at
@@ -21,6 +21,7 @@ from course_lib.beyond.six_dof.poses import distinct, lengths, local
 from course_lib.beyond.six_dof.prediction import MAX_SPREAD, MotionPrediction
 from course_lib.beyond.six_dof.schedule import pyramid
 from course_lib.depth_mcl.one_at_a_time import one_at_a_time
+from course_lib.depth_mcl.status import agreement
 from course_lib.geometry import optical_pose, rotation_exp, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.sensor import subsample_depth
