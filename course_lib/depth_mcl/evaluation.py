@@ -1,4 +1,4 @@
-"""How far off was it: the errors of paper 1's section 4, table 1 and figures 5 and 6, and what they leave out."""
+"""Measure how far off a run was: the errors of paper 1's section 4, table 1, figures 5 and 6, and what these miss."""
 
 from typing import NamedTuple
 
