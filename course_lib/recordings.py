@@ -112,7 +112,7 @@ def find_start(
 
 
 def _known(sequence: DepthSequence, index: int) -> dict:
-    """Return what a recording knows beside a frame's image: its time and gravity, None where it does not."""
+    """Return a frame's time and gravity by name, None where the recording does not have them."""
     columns = {"time": sequence.times, "gravity": sequence.gravity}
     return {name: None if column is None else column[index] for name, column in columns.items()}
 
@@ -127,10 +127,10 @@ def can_search(scene_map: SceneMap) -> bool:
 
 
 def follow(localizer: Localizer | GuardedLocalizer, arrivals: Iterable[tuple[np.ndarray, dict]]) -> Iterator[tuple]:
-    """Yield the estimate, its outcome and the seconds it took for every image and what is known beside it.
+    """Yield the estimate, its outcome and the seconds it took for every image.
 
-    The outcome is the estimate's status, or that of the watch (`guarded_depth.OUTCOMES`). What is known beside an image
-    is given by name if the localizer takes it: time, gravity, increment.
+    The outcome is the estimate's status, or that of the watch (`guarded_depth.OUTCOMES`). Each image comes
+    with other measurements by name, such as time and gravity; the localizer gets those that it takes.
     """
     for depth, known in arrivals:
         begun = time.perf_counter()

@@ -1,4 +1,4 @@
-"""Has the annealed filter lost the track? `depth_mcl.status` explains the words, and judges the paper's filter.
+"""Judge whether the annealed filter is lost. `depth_mcl.status` explains the words, and judges the paper's filter.
 
 A refined pose fits as well as it can, so one image says more of it (`judge_refined`). The covariance and the frames
 before say the rest (`TrackJudge`), because walls look alike. Nothing here looks ahead.

@@ -1,4 +1,4 @@
-"""A filter that looks at each frame before it uses it, and says of every frame what became of it.
+"""Look at each frame before a filter uses it, and say of every frame whether it was used, and why not.
 
     localizer = GuardedLocalizer(RecoveringLocalizer(renderer), period=0.1)     # watching, odometry, gravity, recovery
     localizer.initialize(state0)
@@ -59,7 +59,7 @@ class GuardedLocalizer:
         period: float | None = None,
     ) -> None:
         self.localizer = localizer
-        self.takes = localizer.takes | {"time"}  # what `step` can use beside the image
+        self.takes = localizer.takes | {"time"}  # what `step` can use in addition to the image
         self._camera = localizer.renderer.camera
         self._period = period
         self._begin()

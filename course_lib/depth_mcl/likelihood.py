@@ -1,4 +1,4 @@
-"""Likelihood and weight of every particle (paper 1, sections 3.3.3 and 3.3.4, step A-2), in the order of the paper.
+"""Compute likelihood and weight of every particle in the order of paper 1 (sections 3.3.3 and 3.3.4, step A-2).
 
 likelihood            eq. (8), as one reads it; `compiled_likelihood` gives the same numbers faster
 normalize_likelihood  eq. (9)

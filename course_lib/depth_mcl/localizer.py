@@ -1,4 +1,4 @@
-"""The whole filter in the order of paper 1's figure 1: propagate (A-1), weigh (A-2), estimate and resample (A-3).
+"""Run the whole filter in the order of paper 1's figure 1: propagate (A-1), weigh (A-2), estimate and resample (A-3).
 
     localizer = MonteCarloLocalizer(renderer, n_particles=200, sigma=sigma, seed=0)
     localizer.initialize(state0)
@@ -84,7 +84,7 @@ class MonteCarloLocalizer:
     Source: paper 1, figure 1.
     """
 
-    takes = frozenset()  # what `step` can use beside the image: nothing
+    takes = frozenset()  # what `step` can use in addition to the image: nothing
 
     def __init__(
         self,
@@ -109,9 +109,7 @@ class MonteCarloLocalizer:
         if weighting is not None and not all(callable(getattr(weighting, part, None)) for part in Weighting._fields):
             raise ValueError(f"weighting must have the calls {', '.join(Weighting._fields)}; got {weighting!r}")
         if weighting is not None and (alpha, beta) != (ALPHA, BETA):
-            raise ValueError(
-                "alpha and beta belong to the paper's weighting; got another one beside them: leave them out"
-            )
+            raise ValueError("alpha and beta belong to the paper's weighting; got another one: leave them out")
         resample(np.ones(1), np.random.default_rng(0), resampling)  # refuses an unknown scheme now, not at frame one
         self.renderer = renderer
         self.n_particles = int(n_particles)

@@ -1,4 +1,4 @@
-"""The files of a recording, each read and checked: depth images, poses, times, gravity, the upward axis.
+"""Read and check the files of a recording: depth images, poses, times, gravity, the upward axis.
 
 `course_lib.depth_mcl.sequence` says what they hold and joins them. Poses are camera-to-world matrices in the optical
 convention (x right, y down, z forward), metres: poses.txt as in the 7-Scenes dataset, TUM trajectories

@@ -1,4 +1,4 @@
-"""The status of a pose: the four words that all filters here use, and the judge of the paper's filter.
+"""Say how far a pose can be believed: the four words that all filters here use, and the judge of the paper's filter.
 
 "tracked"          the pose can be relied on: the image agrees with the map, and the covariance is small
 "doubtful"         the pose may be right, but this frame and those before it do not show it

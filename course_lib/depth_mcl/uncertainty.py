@@ -1,4 +1,4 @@
-"""How far off may the estimate be? Compute a covariance from the particles and raw scores that a frame has anyway.
+"""Compute how far off the estimate may be, from the particles and raw scores that a frame has anyway.
 
 The paper's weights cannot say it, because with beta = 0.01 they leave about one particle. A likelihood of independent
 pixels cannot either, because a displaced door moves thousands of pixels at once. So we weigh the particles a second

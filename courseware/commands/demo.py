@@ -175,7 +175,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _network(detector: Path | None, input_size: list[int] | None, score_threshold: float | None) -> list:
-    """The detector as finished rooms know it (`observed_rooms.loaded`): with a checksum of the network's files."""
+    """Return the detector as finished rooms know it (`observed_rooms.loaded`), with a checksum of its files."""
     folder = (detector or data_path("detector")).absolute()
     digest = hashlib.sha256()
     for path in sorted(folder.iterdir()):

@@ -1,4 +1,4 @@
-"""What `localize` prints and writes: numbers, a table, one line on the track, rows, trajectory, figure."""
+"""Tell and write the results of `localize`: numbers, a table, one line on the track, rows, trajectory, figure."""
 
 from collections import Counter
 from functools import partial

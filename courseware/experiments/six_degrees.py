@@ -1,4 +1,4 @@
-"""Six degrees of freedom side by side: the annealed filter, the paper's, and how well the truth itself fits.
+"""Compare filters in six degrees of freedom: the annealed one, the paper's, and how well the truth itself fits.
 
 A run gives plain lists, one entry a frame, so that runs of several seeds, recordings and offsets can be pooled.
 """
@@ -32,13 +32,13 @@ class StandingStill(MotionPrediction):
     """A prediction that knows no motion: the cloud lies about the last pose, as wide as for a start."""
 
     def found(self, pose: np.ndarray, seen: bool = True, rivals: Sequence[Rival] = ()) -> None:
-        """The camera is at `pose`; how it came there is forgotten."""
+        """Take the camera to be at `pose`, and forget how it came there."""
         super().found(pose, seen, rivals)
         self.motion, self._lengths = np.zeros(6), []
 
 
 def image_alone(prior: np.ndarray, information: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """In place of `fused`: the pose is the image's in every direction, the covariance Kalman's, (P^-1 + I)^-1."""
+    """Return, in place of `fused`, Kalman's covariance (P^-1 + I)^-1, and the image's pose in every direction."""
     return np.linalg.solve(np.eye(6) + prior @ information, prior), np.eye(6)
 
 
@@ -73,7 +73,7 @@ def require_methods(text: str, known: Sequence[str] = (*METHODS, "recovering", *
 def run_frames(
     method: str, scene_map: SceneMap, sequence: DepthSequence, seed: int, progress: Callable = iter
 ) -> dict[str, list]:
-    """Errors, statuses and renders of every frame of a recording; of `METHODS` or `ABLATIONS`; "floor" has no seed."""
+    """Return errors, statuses and renders of every frame by one of `METHODS` or `ABLATIONS`; "floor" has no seed."""
     if method == "floor":
         return floor_frames(scene_map, sequence, progress)
     parts = ABLATIONS.get(method, {}) if method != "paper" else system_noise("6", *SIGMA["6"])
@@ -92,7 +92,7 @@ def run_frames(
 
 
 def floor_frames(scene_map: SceneMap, sequence: DepthSequence, progress: Callable = iter) -> dict[str, list]:
-    """What refinement makes of the *true* pose: no estimate agrees better. score: at the truth, before refinement."""
+    """Return the errors of the refined *true* pose: no estimate agrees better. score: before refinement."""
     rows = []
     with DepthRenderer(scene_map, sequence.camera()) as renderer:
         fine = pyramid(renderer)[-1]
@@ -109,7 +109,7 @@ def floor_frames(scene_map: SceneMap, sequence: DepthSequence, progress: Callabl
 
 
 def pooled(runs: Sequence[dict[str, list]]) -> dict[str, float]:
-    """The numbers of a row of the table, of all frames of some runs together."""
+    """Return the numbers of a row of the table, of all frames of some runs together."""
     frames = {key: np.concatenate([run[key] for run in runs]) for key in runs[0]}
     position, rotation, lost = frames["position_m"], frames["rotation_deg"], frames["status"] == "lost"
     wrong = (position > WRONG_POSITION) | (rotation > WRONG_ROTATION_DEG)

@@ -10,7 +10,7 @@ from course_lib.beyond.guarded_depth import OUTCOMES, GuardedLocalizer
 from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
 from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
 from course_lib.beyond.six_dof.poses import motion_between
-from course_lib.depth_mcl import likelihood
+from course_lib.depth_mcl.likelihood import ALPHA, compiled_likelihood, likelihood
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
 from course_lib.geometry import optical_pose
 from tests.rendering.shapes import SMALL
@@ -116,9 +116,9 @@ def test_another_alpha_shifts_no_status(renderer, monkeypatch):
         guarded.initialize(START)
         return [guarded.step(image).outcome for image in images]
 
-    usual = outcomes(likelihood.ALPHA)
+    usual = outcomes(ALPHA)
     assert usual == ["tracked"] * 3 + ["lost"] * 3
-    for function in (likelihood.likelihood, likelihood.compiled_likelihood):
+    for function in (likelihood, compiled_likelihood):
         monkeypatch.setattr(function, "__defaults__", (0.3,))
     for module in [one for name, one in sys.modules.items() if name.startswith("course_lib") and hasattr(one, "ALPHA")]:
         monkeypatch.setattr(module, "ALPHA", 0.3)

@@ -1,4 +1,4 @@
-"""Where is the camera when nobody says? Compare its image with stored views of all free space, and follow the best.
+"""Find the camera when nobody says where it is: compare its image with stored views of all free space.
 
     search = GlobalSearch(renderer, seed=0)
     for depth, gravity in recording:
@@ -107,7 +107,7 @@ class GlobalSearch:
 
     @one_at_a_time
     def forget(self) -> None:
-        """Start anew, without candidates."""
+        """Start again, without candidates."""
         self._followed = []
 
     @one_at_a_time

@@ -1,4 +1,4 @@
-"""Lost, or carried away while it could not see: the filter notices, and searches.
+"""Notice that the filter is lost, or was carried away while it could not see, and search.
 
 A global search begins if the filter was lost for some frames in a row, or if the camera was covered. The filter goes on
 and suggests its pose as one candidate among others. The search decides.
@@ -40,7 +40,7 @@ class RecoveringLocalizer:
     free space.
     """
 
-    takes = frozenset({"increment", "gravity"})  # what `step` can use beside the image
+    takes = frozenset({"increment", "gravity"})  # what `step` can use in addition to the image
 
     def __init__(self, renderer: DepthRenderer, n_particles: int = 200, *, seed: int = 0, **search: object) -> None:
         self.renderer = renderer
@@ -55,7 +55,7 @@ class RecoveringLocalizer:
 
     @property
     def search(self) -> GlobalSearch:
-        """The search, made at first use."""
+        """Return the search, made at first use."""
         if self._search is None:
             self._search = GlobalSearch(self.renderer, **self._of_search)
         return self._search

@@ -1,4 +1,4 @@
-"""What a map looks like from some thousands of places, stored once, so that a frame can be compared with all of them.
+"""Store how a map looks from some thousands of places, so that a frame can be compared with all of them.
 
 Gravity is known, so a camera at a place can only be turned about the vertical. Therefore one image of all directions is
 enough for all its headings: a heading shifts that image by whole columns. An image of the camera is compared with every
