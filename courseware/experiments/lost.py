@@ -154,7 +154,7 @@ def start_anywhere(recording: DepthSequence, renderer: DepthRenderer, seed: int)
 def _played(
     recording: DepthSequence, frames: Iterable[int | None], rng: np.random.Generator
 ) -> Iterator[tuple[np.ndarray, np.ndarray | None, np.ndarray | None]]:
-    """Yield depth image, gravity `(3,)` in the optical frame, and true pose of frames; nothing is seen in a frame None."""
+    """Yield depth image, gravity `(3,)` in the optical frame, and true pose of frames; nothing is seen in None."""
     for index in frames:
         if index is None:
             yield np.full(recording.image_shape, np.nan, dtype=np.float32), None, None
