@@ -40,17 +40,16 @@ class DepthSequence:
     """A recording on disk; images are read when asked for."""
 
     folder: Path
-    frames: list[int]  # Frame numbers, ascending.
-    files: list[Path]  # One depth image a frame.
-    true_poses: np.ndarray | None
-    """`(T, 4, 4)` float64, camera-to-world, optical convention; None where the truth is not known."""
-    intrinsics: np.ndarray  # K `(3, 3)`, pixels.
+    frames: list[int]  # frame numbers, ascending
+    files: list[Path]  # one depth image a frame
+    true_poses: np.ndarray | None  # `(T, 4, 4)` camera-to-world, optical convention; None where the truth is not known
+    intrinsics: np.ndarray  # K `(3, 3)`, pixels
     image_shape: tuple[int, int]  # (height, width).
-    up: str | None  # World axis that points up, such as "z"; None where nothing is known.
-    times: np.ndarray | None  # `(T,)` seconds.
-    path_on_floor: np.ndarray | None  # `(P, 3)` metres.
-    units_per_metre: float = UNITS_PER_METRE  # What the depth images count in.
-    gravity: np.ndarray | None = None  # `(T, 3)` down in the camera's optical frame.
+    up: str | None  # world axis that points up, such as "z"; None where nothing is known
+    times: np.ndarray | None  # `(T,)` seconds
+    path_on_floor: np.ndarray | None  # `(P, 3)` metres
+    units_per_metre: float = UNITS_PER_METRE  # what the depth images count in
+    gravity: np.ndarray | None = None  # `(T, 3)` down in the camera's optical frame
 
     @property
     def has_poses(self) -> bool:

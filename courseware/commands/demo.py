@@ -147,7 +147,9 @@ def run(arguments: argparse.Namespace) -> int:
     for option in {"every", "share"} & set(parameters):
         parameters[option] = options.parse_numbers(f"--{option}", parameters[option])
     if "input_size" in parameters:
-        detector = options.chosen_detector(arguments)  # refused now if something is wrong with it, not after the first room
+        detector = options.chosen_detector(
+            arguments
+        )  # refused now if something is wrong with it, not after the first room
         own = {key: parameters.pop(key) for key in ("detector", "input_size", "score_threshold")}
         parameters |= {"detector": detector} if name == "room" else {"network": _network(**own)}
 

@@ -52,18 +52,18 @@ CLEAR_GAP = 0.08  # of evidence, between the best candidate and the next elsewhe
 class PoseCandidate(NamedTuple):
     """A pose that the camera may have."""
 
-    state: np.ndarray  # `(6,)`.
-    evidence: float  # Running mean of agreeing - 3 through over its frames: 1 at best.
-    frames: int  # How many frames it has explained.
+    state: np.ndarray  # `(6,)`
+    evidence: float  # running mean of agreeing - 3 through over its frames: 1 at best
+    frames: int  # how many frames it has explained
 
 
 class PoseCandidates(NamedTuple):
     """The answer of a search after the frames so far."""
 
     status: Literal["found", "several", "searching"]  # one pose explains the frames; more than one; none long enough
-    poses: list[PoseCandidate]  # Best first; no two are at the same place.
-    particles: int  # How many poses were compared with this frame by their stored views.
-    renders: int  # How many images were drawn in this frame.
+    poses: list[PoseCandidate]  # best first; no two are at the same place
+    particles: int  # how many poses were compared with this frame by their stored views
+    renders: int  # how many images were drawn in this frame
 
 
 class _Followed(MotionPrediction):

@@ -26,9 +26,9 @@ _AT_ONCE = 250  # places whose rays are cast together
 class Look(NamedTuple):
     """A camera's image on the sphere, upright and of heading 0: its P measured pixels."""
 
-    rows: np.ndarray  # `(P,)` of the stored images.
-    columns: np.ndarray  # `(P,)` of the stored images.
-    ranges: np.ndarray  # `(P,)` metres from the camera, along the ray.
+    rows: np.ndarray  # `(P,)` of the stored images
+    columns: np.ndarray  # `(P,)` of the stored images
+    ranges: np.ndarray  # `(P,)` metres from the camera, along the ray
 
 
 class StoredViews:
