@@ -129,8 +129,8 @@ def can_search(scene_map: SceneMap) -> bool:
 def follow(localizer: Localizer | GuardedLocalizer, arrivals: Iterable[tuple[np.ndarray, dict]]) -> Iterator[tuple]:
     """Yield the estimate, its outcome and the seconds it took for every image.
 
-    The outcome is the estimate's status, or that of the watch (`guarded_depth.OUTCOMES`). Each image comes
-    with other measurements by name, such as time and gravity; the localizer gets those that it takes.
+    The outcome is the estimate's status, or that of the watch (`guarded_depth.OUTCOMES`). Each image comes with other
+    measurements by name, such as time and gravity. The localizer gets those that it takes.
     """
     for depth, known in arrivals:
         begun = time.perf_counter()

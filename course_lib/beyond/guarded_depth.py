@@ -104,7 +104,8 @@ class GuardedLocalizer:
         if fault is not None:
             return GuardedFrame(fault, self._move(**known), missed, self._recovery)
         self._advance(depth, **known)
-        return GuardedFrame(self._judged(), self._last, missed, self._recovery)
+        outcome = self._judged()
+        return GuardedFrame(outcome, self._last, missed, self._recovery)
 
     def _require_used(self, **given: np.ndarray | None) -> None:
         """Raise `ValueError` if something was given that the localizer does not take."""
@@ -129,10 +130,11 @@ class GuardedLocalizer:
 
     def _judged(self) -> Outcome:
         """Return the outcome of a frame that was used: its status, doubtful while good frames are owed."""
-        status = self._last.status
-        if status == "no measurement":  # all of it lies outside the camera's planes once it is projected
+        if self._last.status == "no measurement":  # all of it lies outside the camera's planes once it is projected
             return "no return"
-        return "doubtful" if status == "tracked" and not self._debt.is_paid(good=True) else status
+        if self._last.status == "tracked" and not self._debt.is_paid(good=True):
+            self._last = self._last._replace(status="doubtful")
+        return self._last.status
 
 
 def _joined(increments: list[np.ndarray | None]) -> np.ndarray | None:

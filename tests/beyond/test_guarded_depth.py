@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from course_lib.beyond.guarded_depth import OUTCOMES, GuardedLocalizer
+from course_lib.beyond.guarded_depth import OUTCOMES, GuardedLocalizer, status_of
 from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
 from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
 from course_lib.beyond.six_dof.poses import motion_between
@@ -128,7 +128,9 @@ def test_another_alpha_shifts_no_status(renderer, monkeypatch):
 def test_after_long_trouble_one_good_frame_is_no_proof(renderer, walk):
     frames = timed(walk[1])
     frames[10:16] = [(np.full(SMALL.shape, np.nan), time) for _, time in frames[10:16]]
-    outcomes = [one.outcome for one in run(renderer, "annealed", frames)]
+    seen = run(renderer, "annealed", frames)
+    outcomes = [one.outcome for one in seen]
+    assert [one.estimate.status for one in seen] == [status_of(one) for one in outcomes], "one word, wherever one looks"
     assert "tracked" not in outcomes[10:18]
     assert outcomes[-1] == "tracked"
 
