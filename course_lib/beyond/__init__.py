@@ -2,11 +2,11 @@
 
 six_dof/         paper 1, section 5: all six degrees of freedom, by an annealed and refined filter
 lost_and_found/  a start that is not known, and finding the camera again after it was carried away
-being_lost       whether the filter still holds the track: "tracked", "doubtful" or "lost"
+being_lost       whether the annealed filter still holds the track
 look_alikes/     rooms whose objects look alike: poses of two matches, what speaks for each, how sure
 several_views    several views over time
 compiling        what the first step would wait for, done before
-guarded_*        sensor trouble: whether a frame can be used, and the outcome of each
+guarded_*        sensor trouble: the one watch, which looks at each frame before a filter uses it
 """
 
 # ruff: noqa: F401 - the public names

@@ -1,4 +1,4 @@
-"""A look at a sensor's frame before it is used: is it a new one, and is it an image of the world at all?
+"""Look at a sensor's frame before it is used: is it a new one, and is it an image of the world at all?
 
 `FrameOrder`: is the frame later than the last one, and another image? `FrameCheck`: did enough pixels measure more than
 one value, without noise, as in the last good frames? What lasts `PATIENCE` frames is taken as the world.
@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.being_lost import MIN_PIXELS
+from course_lib.depth_mcl.status import MIN_PIXELS
 
 Fault = Literal[
     "out of order", "repeated", "no return", "saturated", "noise", "half covered", "few returns", "exposure jump"
@@ -21,7 +21,7 @@ MAX_MISSED = 50  # frames that a gap counts as, at most: after a longer one no m
 
 # Limits; in brackets the worst of 1,983 undisturbed frames: data/corridor, corridor seeds 10,001 to 10,003 (also with
 # calibration errors and by hand; half the pixels each way), and a real Kinect's kitchen.
-MAX_OF_ONE_VALUE = 0.5  # share of the returns: a sensor at its stop gives one value (0.05)
+MAX_OF_ONE_VALUE = 0.5  # share of the returns: a saturated sensor gives one value everywhere (0.05)
 MAX_ROUGHNESS = 0.1  # of the distance: independent values differ by about half of it, surfaces by less (0.024)
 COVERED_HALF = 0.1  # of a half's usual returns (0.67); the other half must keep half of its own
 FEW_RETURNS = 0.4  # of the usual share of returns (0.86)
@@ -33,10 +33,10 @@ _MIN_HALF = 0.2  # share of returns that a half must usually have before we miss
 
 
 class FrameStatus(NamedTuple):
-    """What is known of a frame before it is used."""
+    """The status of a frame before it is used."""
 
-    fault: Fault | None  # None if it is good.
-    missed: int  # How many frames should have come since the last one in order, and did not.
+    fault: Fault | None  # None if it is good
+    missed: int  # how many frames should have come since the last one in order, and did not
 
 
 class FrameOrder:
@@ -67,7 +67,7 @@ class FrameOrder:
                 if time - self._latest > MAX_PERIODS * self.period:
                     raise ValueError(
                         f"a frame came at {time:g}, {(time - self._latest) / self.period:.1g} periods after the last "
-                        "one. Seconds are expected: divide nanoseconds by 1e9, or begin anew after so long a pause"
+                        "one. Seconds are expected: divide nanoseconds by 1e9. After so long a pause initialize again"
                     )
                 missed = int(np.clip(round((time - self._latest) / self.period) - 1, 0, MAX_MISSED))
             self._latest, self._behind = time, []
@@ -89,12 +89,12 @@ class FrameOrder:
 
 
 class Looks(NamedTuple):
-    """What a depth image looks like, without a map."""
+    """The looks of a depth image, without a map."""
 
-    share: float  # Share of the pixels that measured something.
-    halves: np.ndarray  # `(4,)` the same of the upper, lower, left and right half.
-    most_of_one_value: float  # Share of the returns that have the commonest value.
-    roughness: float  # Median over neighbours in a row of |difference| / distance; NaN if no two neighbours measured.
+    share: float  # share of the pixels that measured something
+    halves: np.ndarray  # `(4,)` the same of the upper, lower, left and right half
+    most_of_one_value: float  # share of the returns that have the commonest value
+    roughness: float  # median over neighbours in a row of |difference| / distance; NaN if no two neighbours measured
 
 
 def looks_of(depth: np.ndarray, near: float, far: float) -> Looks:

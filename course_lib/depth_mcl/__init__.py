@@ -6,6 +6,7 @@
     particle_filter  3.1 and 3.4, eqs (3), (4), (12): start, A-3
     localizer        figure 1: all of it in order
     uncertainty      how far off the estimate may be, which the paper's weights cannot say
+    status           the four words for how far a pose can be believed, and who says them
     one_at_a_time    two calls at once are refused
     fallon           the method that table 1 compares with
     evaluation       section 4: table 1

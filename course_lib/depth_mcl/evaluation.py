@@ -1,4 +1,4 @@
-"""How far off was it: the errors of paper 1's section 4, table 1 and figures 5 and 6, and what they leave out."""
+"""Measure how far off a run was: the errors of paper 1's section 4, table 1, figures 5 and 6, and what these miss."""
 
 from typing import NamedTuple
 
@@ -16,10 +16,10 @@ PAPER_TABLE_1 = {"proposed method": (0.07, 0.10, 99.0), "Fallon et al. [2]": (0.
 class PositionError(NamedTuple):
     """Errors of one run and the three numbers of table 1."""
 
-    errors: np.ndarray  # `(T,)` metres, one a frame.
-    median: float  # Metres.
-    sigma: float  # Root mean square about zero, metres.
-    within_3sigma: float  # Share of errors of at most three of the paper's sigma (0.30 m), 0 to 1.
+    errors: np.ndarray  # `(T,)` metres, one a frame
+    median: float  # metres
+    sigma: float  # root mean square about zero, metres
+    within_3sigma: float  # share of errors of at most three of the paper's sigma (0.30 m), 0 to 1
 
 
 def nearest_path_error(estimated_xyz: np.ndarray, true_path_xyz: np.ndarray) -> PositionError:

@@ -1,4 +1,4 @@
-"""Likelihood and weight of every particle (paper 1, sections 3.3.3 and 3.3.4, step A-2), in the order of the paper.
+"""Compute likelihood and weight of every particle in the order of paper 1 (sections 3.3.3 and 3.3.4, step A-2).
 
 likelihood            eq. (8), as one reads it; `compiled_likelihood` gives the same numbers faster
 normalize_likelihood  eq. (9)
@@ -15,13 +15,18 @@ import numpy as np
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.compiled import compiled
 
-ALPHA = 0.1  # metres, paper 1, section 4
+# Metres, paper 1, section 4. No status follows it: their limits have `status.AGREES_WITHIN`. Another default shifts the
+# raw scores, so choose these again: `uncertainty.INDEPENDENT_PIXELS`, `simplification.TOLERANCE`, and, in the annealed
+# filter, which scores with the default, `SEEN` and `RIVAL_WITHIN`. Then compute again: lessons 00, 06 to 10, 19 and 20,
+# project P1 (its rivals and data/projects/P1.json), data/*/results and the tables of RESULTS.md. Lessons 00, 04 and 06
+# write 0.1 m into their text.
+ALPHA = 0.1
 BETA = 0.01  # no unit (a normalized likelihood), paper 1, section 4
-MAX_DEPTH = 100.0  # metres: no depth camera measures so far, but one that reaches 10 cm gives this in millimetres
+MAX_DEPTH = 100.0  # metres, which no depth camera reaches. A larger value means millimetres: 10 cm reads as 100
 
 
 class DepthImageError(ValueError):
-    """Depth images that do not fit each other or the camera."""
+    """Depth images do not fit each other or the camera."""
 
 
 def checked_image(depth: np.ndarray, camera: DepthCamera) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""A filter takes one call at a time: two at once would mix their images, and no answer would show it."""
+"""Refuse a second call while a filter is in one: two at once would mix their images, and no answer would show it."""
 
 import threading
 from collections.abc import Callable

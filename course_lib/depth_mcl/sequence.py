@@ -1,4 +1,4 @@
-"""Depth-camera recordings: a folder of depth images with intrinsics and poses, as in the 7-Scenes dataset.
+"""Read and write depth-camera recordings: a folder of depth images, intrinsics and poses, as in the 7-Scenes dataset.
 
 depth/NNNNNN*.png   16-bit, depth along the optical axis in millimetres (or other units: read_sequence's
                     units_per_metre), 0 = no measurement
@@ -40,31 +40,30 @@ class DepthSequence:
     """A recording on disk; images are read when asked for."""
 
     folder: Path
-    frames: list[int]  # Frame numbers, ascending.
-    files: list[Path]  # One depth image a frame.
-    true_poses: np.ndarray | None
-    """`(T, 4, 4)` float64, camera-to-world, optical convention; None where the truth is not known."""
-    intrinsics: np.ndarray  # K `(3, 3)`, pixels.
+    frames: list[int]  # frame numbers, ascending
+    files: list[Path]  # one depth image a frame
+    true_poses: np.ndarray | None  # `(T, 4, 4)` camera-to-world, optical convention; None where the truth is not known
+    intrinsics: np.ndarray  # K `(3, 3)`, pixels
     image_shape: tuple[int, int]  # (height, width).
-    up: str | None  # World axis that points up, such as "z"; None where nothing is known.
-    times: np.ndarray | None  # `(T,)` seconds.
-    path_on_floor: np.ndarray | None  # `(P, 3)` metres.
-    units_per_metre: float = UNITS_PER_METRE  # What the depth images count in.
-    gravity: np.ndarray | None = None  # `(T, 3)` down in the camera's optical frame.
+    up: str | None  # world axis that points up, such as "z"; None where nothing is known
+    times: np.ndarray | None  # `(T,)` seconds
+    path_on_floor: np.ndarray | None  # `(P, 3)` metres
+    units_per_metre: float = UNITS_PER_METRE  # what the depth images count in
+    gravity: np.ndarray | None = None  # `(T, 3)` down in the camera's optical frame
 
     @property
     def has_poses(self) -> bool:
-        """Whether the true poses are known."""
+        """Return whether the true poses are known."""
         return self.true_poses is not None
 
     @property
     def camera_to_world(self) -> np.ndarray:
-        """The true poses `(T, 4, 4)`, optical convention; `SequenceError` for a recording that came without."""
+        """Return the true poses `(T, 4, 4)`, optical convention; `SequenceError` for a recording that came without."""
         self.require_poses()
         return self.true_poses
 
     def require_poses(self) -> None:
-        """Raises `SequenceError` for a recording that came without its true poses."""
+        """Raise `SequenceError` for a recording that came without its true poses."""
         if not self.has_poses:
             raise SequenceError(
                 f"{self.folder} holds no poses.txt: its true poses are not known. The filter must be given its start "
@@ -75,7 +74,7 @@ class DepthSequence:
         return len(self.frames)
 
     def thinned(self, every: int, offset: int = 0) -> DepthSequence:
-        """Every so many frames of the recording, from `offset` on: as if the camera had been moved so much faster.
+        """Return every so many frames of the recording, from `offset` on, as if the camera moved so much faster.
 
         Raises `ValueError` where no frame is left.
         """
@@ -88,13 +87,19 @@ class DepthSequence:
             self, **{name: None if value is None else value[kept] for name, value in values.items()}
         )
 
+    @property
+    def period(self) -> float | None:
+        """Return the median seconds from frame to frame; None where the times are not known, or do not ascend."""
+        steps = [] if self.times is None else np.diff(self.times)
+        return float(np.median(steps)) if len(steps) and np.median(steps) > 0 else None
+
     def camera(self, near: float = NEAR, far: float = FAR) -> DepthCamera:
-        """The depth camera that made the recording; near, far: its clip planes, metres."""
+        """Return the depth camera that made the recording; near, far: its clip planes, metres."""
         height, width = self.image_shape
         return DepthCamera.from_matrix(self.intrinsics, width, height, near, far)
 
     def depth(self, index: int) -> np.ndarray:
-        """Depth image `(H, W)` float32 metres of the index-th frame; NaN where nothing was measured."""
+        """Return the depth image `(H, W)` float32 metres of the index-th frame; NaN where nothing was measured."""
         depth = read_depth_png(self.files[index], self.units_per_metre)
         if depth.shape != self.image_shape:
             raise SequenceError(
@@ -104,7 +109,7 @@ class DepthSequence:
         return depth
 
     def __iter__(self) -> Iterator[tuple[int, np.ndarray, np.ndarray | None]]:
-        """Yields (frame number, depth image, camera-to-world matrix or None where the truth is not known)."""
+        """Yield (frame number, depth image, camera-to-world matrix or None where the truth is not known)."""
         for index, frame in enumerate(self.frames):
             yield frame, self.depth(index), self.true_poses[index] if self.has_poses else None
 
@@ -113,7 +118,7 @@ class DepthSequence:
 
 
 def read_sequence(folder: str | Path, units_per_metre: float = UNITS_PER_METRE) -> DepthSequence:
-    """The recording in a folder (format: top of this module), with or without its true poses.
+    """Return the recording in a folder (format: top of this module), with or without its true poses.
 
     units_per_metre: what the depth images count in; 1000 for millimetres, 5000 for files of the TUM RGB-D dataset.
     Raises `FileNotFoundError` for a missing folder or file, `SequenceError` (a `ValueError`) for malformed ones,

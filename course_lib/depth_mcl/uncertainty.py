@@ -1,4 +1,4 @@
-"""How far off may the estimate be? A covariance from the particles and raw scores that a frame has anyway.
+"""Compute how far off the estimate may be, from the particles and raw scores that a frame has anyway.
 
 The paper's weights cannot say it, because with beta = 0.01 they leave about one particle. A likelihood of independent
 pixels cannot either, because a displaced door moves thousands of pixels at once. So we weigh the particles a second
@@ -6,7 +6,7 @@ time, by exp(kappa l/m), as if the whole image were worth kappa independent pixe
 error; `carried_covariance` takes the earlier ones along, as a Kalman filter would.
 
 kappa was calibrated on a wagon in the corridor of seed 10,001. No such covariance can say that the filter is lost
-(course_lib.beyond.being_lost).
+(status.py).
 """
 
 from typing import NamedTuple
@@ -18,10 +18,9 @@ from course_lib.depth_mcl.particle_filter import effective_sample_size
 
 SHARPEST = 1e4  # kappa at most: scores that differ by 1e-4 are then told apart; sharper only tells rounding apart
 
-# How many independent pixels an image is worth, kappa, and how many effective particles beyond the number of moving
-# components are left at least. Both chosen on tuning worlds: see above.
-INDEPENDENT_PIXELS = 50.0
-SPARE_PARTICLES = 2
+# Both chosen on tuning worlds: see above.
+INDEPENDENT_PIXELS = 50.0  # kappa: how many an image is worth; chosen with eq. (8)'s alpha = 0.1 m
+SPARE_PARTICLES = 2  # how many effective particles beyond the number of moving components are left at least
 _NO_VARIANCE = 1e-18  # a nanometre's, or a nanoradian's: what is less is rounding
 _MIN_SHARE = 1e-9  # of a cloud's variance: what is less is rounding, and the cloud is flat there
 
@@ -29,10 +28,9 @@ _MIN_SHARE = 1e-9  # of a cloud's variance: what is less is rounding, and the cl
 class Tempered(NamedTuple):
     """Weights and how sharp they are."""
 
-    weights: np.ndarray  # `(N,)`, summing to one.
-    sharpness: float
-    """kappa: how many independent pixels the image would be worth if these weights were its likelihood."""
-    ess: float  # Effective sample size of the weights.
+    weights: np.ndarray  # `(N,)`, summing to one
+    sharpness: float  # kappa: how many independent pixels the image would be worth if they were its likelihood
+    ess: float  # effective sample size of the weights
 
 
 def temper(scores: np.ndarray, sample_size: float, sharpest: float = SHARPEST) -> Tempered:

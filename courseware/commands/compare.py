@@ -5,15 +5,10 @@ command runs what is missing.
 """
 
 import argparse
-import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 from courseware.commands import arguments as options
 from courseware.commands.output import print_and_write, progress_bar
-from courseware.paths import REPOSITORY
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,13 +19,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     options.add_text(parser, "--every", "NUMBERS", "thin the recording: 1,2,4,8 runs each (default: 1)", "1")
     options.add_text(parser, "--seeds", "A-B", "seeds of the filters (default: 1)", "1")
     options.add_folder(parser, "--out", "for compare.jsonl, compare.json, covariance.png", Path("results/compare"))
-    told = "beside them, point-to-plane ICP of each frame against the map: Open3D, installed as for bench"
-    options.add_flag(parser, "--icp", told)
     options.add_flag(parser, "--json", "print one JSON object instead of the table")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Runs what is missing, then tells what all runs of a method and a thinning gave together."""
+    """Run what is missing, then print the pooled result of each method and frame rate."""
     from course_lib.depth_mcl.sequence import read_sequence
     from course_lib.rendering.scene_map import SceneMap
     from courseware.experiments import six_degrees
@@ -43,7 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
     options.check_options(arguments)
     SceneMap.load(arguments.map)
     recording = read_sequence(arguments.sequence)
-    recording.require_poses()  # told now, not after the first run
+    recording.require_poses()  # refused now, not after the first run
     recording.thinned(max(everies), max(everies) - 1)
     files = {"map_file": str(arguments.map.absolute()), "sequence": str(arguments.sequence.absolute())}
     points = [
@@ -59,9 +52,6 @@ def run(arguments: argparse.Namespace) -> int:
         name = six_degrees.NAMES.get(point["method"], point["method"]) + thinned
         grouped.setdefault(name, []).append(own)
     rows = {name: six_degrees.pooled(results) for name, results in grouped.items()}
-    if arguments.icp:
-        found = icp_runs(arguments.map, arguments.sequence, everies)
-        rows |= {name: six_degrees.pooled([own]) for name, own in found.items()}
     result = {"map": str(arguments.map), "sequence": str(arguments.sequence), "seeds": seeds, "rows": rows}
 
     def write(out: Path) -> list[str]:
@@ -71,23 +61,3 @@ def run(arguments: argparse.Namespace) -> int:
 
     print_and_write(arguments, "compare", result, six_degrees.six_degrees_table(rows), write, told="")
     return 0
-
-
-def icp_runs(map_file: Path, sequence: Path, everies: list[int]) -> dict[str, dict[str, list]]:
-    """Errors of every frame by ICP, by variant and thinning, as `run_frames` has them; ICP never says it is lost."""
-    script, packages = REPOSITORY / "tools" / "benchmarks" / "icp.py", REPOSITORY / ".bench"
-    if not packages.is_dir():
-        raise RuntimeError("--icp needs Open3D: .venv/bin/python -m tools.bench --quick installs it")
-    words = [script, "--map", map_file, "--sequence", sequence, "--every", ",".join(map(str, everies))]
-    environment = os.environ | {"PYTHONPATH": f"{REPOSITORY}{os.pathsep}{packages}"}
-    command = [sys.executable, "-P", *map(str, words)]
-    done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=False)
-    if done.returncode:
-        raise RuntimeError(f"ICP ended with code {done.returncode}; what it said stands above")
-    runs = {}
-    for name, thinned in json.loads(done.stdout.splitlines()[-1]).items():
-        for every, run in thinned.items():
-            n = len(run["position_m"])
-            told = name if everies == [1] else f"{name}, every {every}"
-            runs[told] = run | {"status": ["tracked"] * n, "renders": [0] * n, "score": [float("nan")] * n}
-    return runs

@@ -18,7 +18,7 @@ OTHERS = {"experiment", "out", "json", "debug"}  # arguments that are no paramet
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declares the options of the demo that the parser is for."""
+    """Declare the options of the demo that the parser is for."""
     name = parser.prog.split()[-1]
     add_options, parser.description = DEMOS[name]
     parser.set_defaults(experiment=name)
@@ -40,11 +40,11 @@ def _seeds(parser: argparse.ArgumentParser, told: str, default: str | None = Non
 def _corridor(parser: argparse.ArgumentParser) -> None:
     options.add_number(parser, "--seed", "seed of the recording and of the filter (default: 0)", 0)
     _seeds(parser, "several seeds instead: median, least and greatest over their recordings")
-    told = "made anew for the seed (default), or data/corridor/wagon, where a seed is the filter's alone"
+    told = "made for the seed (default), or data/corridor/wagon, where a seed is the filter's alone"
     _choice(parser, "--recording", told, ("own", "shipped"), "own")
     told = "measure instead what the simulator's idealizations are worth, on small images (seeds 10001-10003)"
     options.add_flag(parser, "--idealizations", told)
-    told = "the paper's experiment on a wagon (default); 6: cameras carried by hand, the annealed filter beside "
+    told = "the paper's experiment on a wagon (default); 6: cameras carried by hand, the annealed filter, "
     _choice(parser, "--dof", f"xyyaw: {told}the paper's and the floor", ("xyyaw", "6"), "xyyaw")
     told = "with --seeds: rows of the table by name, with commas, among them proposed and fallon (default: all)"
     options.add_text(parser, "--methods", "NAMES", told)
@@ -56,7 +56,7 @@ def _corridor(parser: argparse.ArgumentParser) -> None:
 
 def _room(parser: argparse.ArgumentParser) -> None:
     options.add_number(
-        parser, "--seed", "of the photographs; another than 4 takes them anew (default: 4, the shipped ones)"
+        parser, "--seed", "of the photographs; another than 4 takes new ones (default: 4, the shipped ones)"
     )
     options.add_number(parser, "--poses", "only the first N poses of each experiment (default: all)")
     options.add_folder(parser, "--data", "made by tools.make_data room (default: data/room)")
@@ -89,7 +89,7 @@ def _rooms(parser: argparse.ArgumentParser) -> None:
 
 def _walk(parser: argparse.ArgumentParser) -> None:
     options.add_number(parser, "--seed", "seed of room and walk (default: 1)", 1)
-    _seeds(parser, "several rooms instead, told together")
+    _seeds(parser, "several rooms instead, in one table")
     options.add_text(parser, "--every", "NUMBERS", "thin the recordings: 1,2,4 runs each (default: 1,2,4)", "1,2,4")
     told = "with commas: annealed, recovering (it searches when lost), paper, floor, others as in compare"
     options.add_text(parser, "--methods", "NAMES", f"{told} (default: annealed,floor)", "annealed,floor")
@@ -130,13 +130,13 @@ DEMOS = {
     "rooms": (_rooms, "Run paper 2's room experiment in generated rooms of look-alikes: rates with intervals."),
     "walk": (_walk, "Carry a depth camera through generated rooms: errors in six degrees of freedom."),
     "lost": (_lost, "Kidnap the camera, start it anywhere, leave it in peace, and count how often it finds itself."),
-    "trouble": (_trouble, "Trouble the sensors of both methods, and tell what becomes of every frame."),
+    "trouble": (_trouble, "Trouble the sensors of both methods, and count what becomes of every frame."),
     "finale": (_finale, "Both papers in one world: panoramas find the robot, the depth camera makes it exact."),
 }
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Runs what is missing, prints the table, writes results and figures; returns the exit code."""
+    """Run what is missing, print the table, write results and figures; return the exit code."""
     name = arguments.experiment
     parameters = {key: value for key, value in vars(arguments).items() if key not in OTHERS}
     options.check_options(arguments)
@@ -147,7 +147,9 @@ def run(arguments: argparse.Namespace) -> int:
     for option in {"every", "share"} & set(parameters):
         parameters[option] = options.parse_numbers(f"--{option}", parameters[option])
     if "input_size" in parameters:
-        detector = options.chosen_detector(arguments)  # what is wrong with it is told now, not after the first room
+        detector = options.chosen_detector(
+            arguments
+        )  # refused now if something is wrong with it, not after the first room
         own = {key: parameters.pop(key) for key in ("detector", "input_size", "score_threshold")}
         parameters |= {"detector": detector} if name == "room" else {"network": _network(**own)}
 
@@ -175,7 +177,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _network(detector: Path | None, input_size: list[int] | None, score_threshold: float | None) -> list:
-    """The detector as finished rooms know it (`observed_rooms.loaded`): with a checksum of the network's files."""
+    """Return the detector as finished rooms know it (`observed_rooms.loaded`), with a checksum of its files."""
     folder = (detector or data_path("detector")).absolute()
     digest = hashlib.sha256()
     for path in sorted(folder.iterdir()):

@@ -1,4 +1,4 @@
-"""The figures and scenes that the demos write: each function draws into a folder, and returns what it wrote."""
+"""Draw the figures and scenes of the demos: each function draws into a folder, and returns the names of its files."""
 
 from functools import partial
 from pathlib import Path
@@ -16,7 +16,7 @@ from courseware.plots.track_scene import track_scene
 
 
 def corridor(out: Path, record) -> list[str]:
-    """Figures 5 and 6, the overview, the paper's method as trajectory (TUM) and scene."""
+    """Draw figures 5 and 6, the overview, the paper's method as trajectory (TUM) and scene."""
     maps, sequence, rows, backend = record
     ours = rows["proposed"]
     shown = {"ours": ours, "Fallon-style, 20 x 15": rows["fallon"]}
@@ -38,7 +38,7 @@ def corridor(out: Path, record) -> list[str]:
 
 
 def room(out: Path, record) -> list[str]:
-    """All poses of both experiments from above; of one that is right and one that is wrong a figure and a scene."""
+    """Draw all poses of both experiments from above, and a figure and a scene of a right and of a wrong one."""
     semantic_map, results = record
     figures, scenes = {}, []
     for experiment, by_source in results.items():
@@ -67,7 +67,7 @@ def _save(out: Path, figures: dict, dots_per_inch: int = 110) -> list[str]:
 
 
 def risk_coverage(out: Path, curve: dict) -> list[str]:
-    """What a threshold on the confidence buys."""
+    """Draw errors over the share of places that a threshold on the confidence leaves."""
     return _save(out, {"risk_coverage.png": risk_coverage_figure({"consistent, one view": curve})})
 
 

@@ -6,7 +6,6 @@ errors are printed too; without it the start must be given.
 
 import argparse
 import math
-from collections import Counter
 from functools import partial
 
 import numpy as np
@@ -77,10 +76,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run the filter. 0 when it reached the last frame, whatever it believes of the track."""
-    from course_lib import recordings
     from course_lib.depth_mcl.sequence import read_sequence
+    from course_lib.recordings import can_search, run_sequence, system_noise
     from course_lib.rendering.scene_map import SceneMap
-    from courseware.commands.localize_report import believed, doubted_intrinsics, localize_table, write_localized
+    from courseware.commands.localize_report import localize_table, results, write_localized
 
     method, sigma = _checked(arguments)
     sequence = read_sequence(arguments.sequence, arguments.depth_scale)
@@ -88,40 +87,48 @@ def run(arguments: argparse.Namespace) -> int:
     up = arguments.up or sequence.up or "unknown"
     if arguments.dof == "xyyaw" and up == "unknown":
         raise ValueError("--dof xyyaw: which way is up in this world is unknown; give --up AXIS, or use --dof 6")
-    scene_map = SceneMap.load(arguments.map, drop_far=arguments.drop_far)
-    searched = {}
+    scene_map, searched = SceneMap.load(arguments.map, drop_far=arguments.drop_far), {}
     if arguments.start == "unknown":
-        sequence, start, searched = _found_start(arguments, scene_map, sequence, up)
+        sequence, start = _found_start(arguments, scene_map, sequence, up)
+        searched = {"found_in_frame": sequence.frames[0]}
     else:
         start = _given_start(arguments.start, sequence, "z" if up == "unknown" else up)
-    if arguments.recover is None:
-        arguments.recover = method == "annealed" and up != "unknown" and recordings.can_search(scene_map)
-    localized = recordings.run_recovering if arguments.recover else recordings.run_annealed
-    if method == "paper":
-        localized = partial(recordings.run_sequence, **recordings.system_noise(arguments.dof, *sigma))
-    asked = {name: getattr(arguments, name) for name in ("seed", "frames", "backend", "exact", "near", "far")}
-    asked |= {"n_particles": arguments.particles, "up": "z" if up == "unknown" else up, "start": start}
-    result = localized(scene_map, sequence, **asked, watched=True, progress=progress_bar("localizing"))
+    recover = arguments.recover
+    if recover is None:
+        recover = method == "annealed" and up != "unknown" and can_search(scene_map)
     noise = {"sigma_position_m": sigma[0], "sigma_rotation_deg": sigma[1]} if method == "paper" else {}
-    files = {"map": str(arguments.map), "sequence": str(arguments.sequence)}
+    found = run_sequence(
+        scene_map,
+        sequence,
+        "recovering" if recover else method,
+        up="z" if up == "unknown" else up,
+        start=start,
+        n_particles=arguments.particles,
+        watched=True,
+        progress=progress_bar("localizing"),
+        **{name: getattr(arguments, name) for name in ("seed", "frames", "near", "far", "backend", "exact")},
+        **(system_noise(arguments.dof, *sigma) if noise else {}),
+    )
     summary = {
-        **{"method": method, **noise, "recover": arguments.recover, "n_particles": arguments.particles, **files},
-        **{"start": arguments.start or "first row of poses.txt", "dof": arguments.dof, "up": up},
-        **{"seed": arguments.seed, "depth_units_per_metre": arguments.depth_scale},
-        **{"near_m": arguments.near, "far_m": arguments.far, "backend": arguments.backend, "exact": arguments.exact},
+        "method": method,
+        **noise,
+        "recover": recover,
+        "n_particles": arguments.particles,
+        "map": str(arguments.map),
+        "sequence": str(arguments.sequence),
+        "start": arguments.start or "first row of poses.txt",
+        "dof": arguments.dof,
+        "up": up,
+        "seed": arguments.seed,
+        "depth_units_per_metre": arguments.depth_scale,
+        "near_m": arguments.near,
+        "far_m": arguments.far,
+        "backend": arguments.backend,
+        "exact": arguments.exact,
         **searched,
-        "frames": len(result.frames),
-        "frames_without_measurement": result.frames_without_measurement,
-        "frames_at_fault": dict(Counter(fault for fault in result.faults if fault not in (None, "no return"))),
-        **{f"frames_{status}": result.statuses.count(status) for status in ("tracked", "doubtful", "lost")},
-        "believes": believed(result.frames, result.statuses),
-        **doubted_intrinsics(result.calibration, sequence.camera(arguments.near, arguments.far)),
-        **(recordings.pose_error_summary(result, sequence) if sequence.has_poses else {}),
-        "renders_per_frame": float(np.mean(result.renders)),
-        "most_renders": int(result.renders.max()),
-        "ms_per_frame": result.ms_per_frame,
+        **results(found, sequence, sequence.camera(arguments.near, arguments.far)),
     }
-    write = partial(write_localized, summary=summary, result=result, sequence=sequence, scene_map=scene_map)
+    write = partial(write_localized, summary=summary, result=found, sequence=sequence, scene_map=scene_map)
     print_and_write(arguments, "localize", summary, localize_table(summary), write, "Written to {out}: {files}")
     if not arguments.json:
         print(summary["believes"])
@@ -178,7 +185,7 @@ def _numbers(text: str) -> list[float]:
 
 
 def _found_start(arguments, scene_map, sequence, up: str) -> tuple:
-    """Return the recording from the frame in which its place was found, the pose there, and what the results tell."""
+    """Return the recording from the frame in which its place was found, and the pose there."""
     from course_lib.recordings import find_start
 
     if up == "unknown":
@@ -194,11 +201,11 @@ def _found_start(arguments, scene_map, sequence, up: str) -> tuple:
         told = f"it may be at {where}; in a world whose z is up" if where else "no place agrees with the images"
         told += ". Give --start, or a recording that begins where the building looks like no other place"
         raise ValueError(f"the start was not found in {index + 1} frames: {told}")
-    return sequence.thinned(1, index), start, {"found_in_frame": sequence.frames[index]}
+    return sequence.thinned(1, index), start
 
 
 def _given_start(given: str | None, sequence, up: str) -> np.ndarray:
-    """Camera-to-world matrix `(4, 4)` of the first frame in the map's own world, optical convention."""
+    """Return the camera-to-world matrix `(4, 4)` of the first frame in the map's own world, optical convention."""
     from course_lib.depth_mcl.sequence_files import read_pose
     from course_lib.geometry import optical_pose, rotation_to_z_up
 

@@ -1,21 +1,41 @@
-"""What `localize` prints and writes: the table, one line on the track, rows, trajectory, figure."""
+"""Tell and write the results of `localize`: numbers, a table, one line on the track, rows, trajectory, figure."""
 
+from collections import Counter
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
+from course_lib.recordings import pose_error_summary
 from courseware.commands.output import write_scene
 
 
+def results(run, sequence, camera) -> dict:
+    """Return the numbers of a run as its JSON has them."""
+    return {
+        "frames": len(run.frames),
+        "frames_without_measurement": run.faults.count("no return"),
+        "frames_at_fault": dict(Counter(fault for fault in run.faults if fault not in (None, "no return"))),
+        **{f"frames_{status}": run.statuses.count(status) for status in ("tracked", "doubtful", "lost")},
+        "believes": believed(run.frames, run.statuses),
+        **doubted_intrinsics(run.calibration, camera),
+        **(pose_error_summary(run, sequence) if sequence.has_poses else {}),
+        "renders_per_frame": float(np.mean(run.renders)),
+        "most_renders": int(run.renders.max()),
+        "ms_per_frame": run.ms_per_frame,
+    }
+
+
 def believed(frames: list[int], statuses: list[str]) -> str:
-    """One line on the track: "lost from frame 41 on (126 of 167 frames)", "tracked in all 167 frames", and the like."""
+    """Return one line on the track, such as "lost from frame 41 on (126 of 167 frames; tracked 40, doubtful 1)"."""
     total, lost, tracked = len(frames), statuses.count("lost"), statuses.count("tracked")
+    doubtful, unseen = statuses.count("doubtful"), statuses.count("no measurement")
+    predicted = f", predicted only {unseen}" if unseen else ""
     if tracked == total:
         return f"tracked in all {total} frames"
     if not lost:
-        return f"tracked in {tracked} of {total} frames, doubtful in {total - tracked}"
+        return f"tracked in {tracked} of {total} frames, doubtful in {doubtful}{predicted}"
     indices = [index for index, status in enumerate(statuses) if status == "lost"]
     first, last = indices[0], indices[-1]
     stretches = 1 + sum(b - a > 1 for a, b in pairwise(indices))
@@ -25,7 +45,7 @@ def believed(frames: list[int], statuses: list[str]) -> str:
         where = f"from frame {frames[first]} to {frames[last]}"
     else:
         where = f"in {stretches} stretches between frames {frames[first]} and {frames[last]}"
-    return f"lost {where} ({lost} of {total} frames; tracked {tracked}, doubtful {total - tracked - lost})"
+    return f"lost {where} ({lost} of {total} frames; tracked {tracked}, doubtful {doubtful}{predicted})"
 
 
 def doubted_intrinsics(calibration, camera) -> dict:
@@ -41,6 +61,7 @@ def doubted_intrinsics(calibration, camera) -> dict:
 
 
 def localize_table(s: dict) -> str:
+    """Return the summary `s` in words."""
     estimated = "all six degrees of freedom" if s["dof"] == "6" else "x, y and yaw"
     by = f"{s['n_particles']} particles" if s["method"] == "paper" else "the annealed filter"
     lines = [f"{s['frames']} frames, {estimated} estimated with {by}", ""]

@@ -111,7 +111,7 @@ def run(
 
 
 def _run_seeds(runner: Runner, seeds: list[int], settings: dict) -> Outcome:
-    """Table 1 over the recordings of several seeds."""
+    """Return table 1 over the recordings of several seeds."""
     rows = runner.rows(table_1_of_seed, [{"seed": seed, **settings} for seed in seeds], "corridor")
     summaries = [row["summary"] for row in rows]
     result = {
@@ -125,7 +125,7 @@ def _run_seeds(runner: Runner, seeds: list[int], settings: dict) -> Outcome:
 
 
 def _run_idealizations(runner: Runner, seeds: list[int], data: Path, particles: int, **options: object) -> Outcome:
-    """The paper's method on recordings with no hardship, with each alone, and with all."""
+    """Run the paper's method on recordings with no hardship, with each alone, and with all."""
     every = {"none": (), **{name: (name,) for name in HARDSHIPS}, "all": HARDSHIPS}
     common = {"data": str(data), "n_particles": particles, **options}
     points = [{"seed": seed, "hardships": list(own), **common} for own in every.values() for seed in seeds]
@@ -204,7 +204,7 @@ def run_row(method: Method, maps: Maps, sequence: DepthSequence, **options: obje
 def hardship_errors(
     seed: int, data: str, hardships: Sequence[Hardship], frames: int | None = None, **options: object
 ) -> dict[str, float]:
-    """Median errors [m] of the paper's method on a seed's small recording with these hardships and no others."""
+    """Return the median errors [m] of the paper's method on a seed's small recording with only these hardships."""
     camera = DepthCamera.sr4000().resized(*IDEALIZATION_SIZE)
     with temporary_folder() as folder:
         record_seed(folder / "run", building_of_data(data), seed, tuple(hardships), camera=camera, frames=frames)
@@ -323,7 +323,7 @@ def table_of_idealizations(result: dict) -> str:
 
 
 def _spreads(row: dict, columns: dict[str, int]) -> str:
-    """Some spreads of a row, with so many digits: "median (least to greatest)" each."""
+    """Return some spreads of a row, with so many digits: "median (least to greatest)" each."""
     told = []
     for key, digits in columns.items():
         middle, low, high = ("?" if value is None else f"{value:.{digits}f}" for value in row[key].values())

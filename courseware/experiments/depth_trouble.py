@@ -1,4 +1,4 @@
-"""What goes wrong with a depth camera's frames, and what paper 1's filter and the annealed one make of it.
+"""Trouble a depth camera's frames, and run paper 1's filter and the annealed one on them.
 
 Both filters are guarded (`beyond/guarded_depth.py`). An exposure that jumps is modelled after the simulated camera
 (simulation/sensors/time_of_flight.py): with a share of the light amplitudes fall to that share, ranges are noisier, by
@@ -38,7 +38,7 @@ MAX_RANGE = 9.99  # m, where a saturated sensor stops: the SR4000's unambiguous 
 
 
 def half_covered(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """One half, upper, lower, left or right, without returns: a hand before the lens is too near for any."""
+    """Return one half, upper, lower, left or right, without returns: a hand before the lens is too near for any."""
     covered = image.copy()
     height, width = image.shape
     halves = (np.s_[: height // 2], np.s_[height // 2 :], np.s_[:, : width // 2], np.s_[:, width // 2 :])
@@ -47,7 +47,7 @@ def half_covered(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng
 
 
 def saturated(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """All pixels at zero, all at the greatest range, or all anywhere between: one of the three, drawn."""
+    """Return all pixels at zero, all at the greatest range, or all anywhere between: one of the three at random."""
     kind = rng.integers(3)
     if kind == 2:
         return rng.uniform(0.0, MAX_RANGE, image.shape).astype(image.dtype)
@@ -55,7 +55,7 @@ def saturated(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: n
 
 
 def underexposed(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """The image with `LIGHT_LEFT` of its light: noisier, and without what is far (the model above)."""
+    """Return the image with `LIGHT_LEFT` of its light: noisier, and without what is far (the model above)."""
     model = TimeOfFlightModel()
     amplitude = LIGHT_LEFT * WHITE_SHARE * 4 / np.maximum(image.astype(np.float64), 0.05) ** 2
     phase = np.sqrt(model.shot_noise**2 / amplitude + model.dark_noise**2 / amplitude**2)
@@ -64,7 +64,7 @@ def underexposed(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng
 
 
 def repeated(image: np.ndarray, earlier: np.ndarray, before: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """The image that arrived before, once more."""
+    """Return the image that arrived before, once more."""
     return before.copy()
 
 

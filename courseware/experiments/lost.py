@@ -1,4 +1,4 @@
-"""Lost and found: kidnap the camera, start it anywhere, leave it in peace, and count how often it finds itself.
+"""Kidnap the camera, start it anywhere, leave it in peace, and count how often it finds itself.
 
 A kidnapping: a recording is played to some frame, nothing is seen for a while, and it goes on in another place.
 """
@@ -49,7 +49,7 @@ def run(runner: Runner, *, seeds: list[int], recording: Path | None, data: Path 
 
 
 def trial(map_file: str, sequence: str, seed: int) -> dict[str, dict]:
-    """One trial: a kidnapping, a start from anywhere, and the recording in peace."""
+    """Return one trial: a kidnapping, a start from anywhere, and the recording in peace."""
     recording = read_sequence(sequence)
     parts = {"kidnapped": kidnapping, "start": start_anywhere, "in peace": undisturbed}
     with DepthRenderer(SceneMap.load(map_file), recording.camera()) as renderer:
@@ -57,21 +57,21 @@ def trial(map_file: str, sequence: str, seed: int) -> dict[str, dict]:
 
 
 def corridor_trial(data: str, seed: int) -> dict[str, dict]:
-    """One trial on a recording of the seed's own, carried by hand through the corridor."""
+    """Return one trial on a recording of the seed's own, carried by hand through the corridor."""
     with temporary_folder() as temporary:
         record_seed(temporary / "hand", building_of_data(data), seed, carried="hand")
         return trial(str(Path(data) / "map.ply"), str(temporary / "hand"), seed)
 
 
 def room_trial(seed: int) -> dict[str, dict]:
-    """One trial on a recording of the seed's own, carried by hand through a generated room (that of `demo walk`)."""
+    """Return one trial on a recording of the seed's own, carried by hand through a room (that of `demo walk`)."""
     with temporary_folder() as temporary:
         record_walk(temporary / "walk", seed)
         return trial(str(temporary / "walk" / "map.ply"), str(temporary / "walk"), seed)
 
 
 def summarize(trials: Sequence[dict[str, dict]]) -> dict[str, float | None]:
-    """The numbers of the table, of some trials; `frames_to_recover` is None where no camera recovered."""
+    """Return the numbers of the table, of some trials; `frames_to_recover` is None where no camera recovered."""
     kidnapped, starts, peace = ([one[part] for one in trials] for part in ("kidnapped", "start", "in peace"))
     recovered = [one["frames_to_recover"] for one in kidnapped if one["frames_to_recover"] is not None]
     found = [one["right"] for one in starts if one["status"] == "found"]
@@ -102,7 +102,7 @@ def lost_table(s: dict) -> str:
 
 
 def kidnapping(recording: DepthSequence, renderer: DepthRenderer, seed: int) -> dict:
-    """One kidnapping, drawn with the seed: whether and after how many frames the camera was found again."""
+    """Return whether and after how many frames the camera was found again after a kidnapping that the seed draws."""
     rng = np.random.default_rng([seed, 11])
     first, after = _places_of_kidnapping(recording, rng)
     frames = [*range(first, first + BEFORE), *[None] * COVERED, *range(after, after + AFTER)]
@@ -119,7 +119,7 @@ def kidnapping(recording: DepthSequence, renderer: DepthRenderer, seed: int) -> 
 
 
 def undisturbed(recording: DepthSequence, renderer: DepthRenderer, seed: int) -> dict:
-    """A recording in peace: in how many of its frames a search began."""
+    """Return in how many frames of a recording in peace a search began."""
     localizer, alarms = RecoveringLocalizer(renderer, seed=seed), 0
     localizer.initialize(state_from_optical_pose(recording.camera_to_world[0]))
     for depth, gravity, _ in _played(recording, range(len(recording)), np.random.default_rng([seed, 12])):
@@ -130,7 +130,7 @@ def undisturbed(recording: DepthSequence, renderer: DepthRenderer, seed: int) ->
 
 
 def start_anywhere(recording: DepthSequence, renderer: DepthRenderer, seed: int) -> dict:
-    """A global start at a frame that the seed draws: when it was found, whether rightly, with how many particles."""
+    """Return when a global start at a frame that the seed draws was found, whether rightly, and the particles."""
     rng = np.random.default_rng([seed, 13])
     first = int(rng.integers(0, len(recording) - START_FRAMES))
     search, begun, answers = GlobalSearch(renderer, seed=seed), time.perf_counter(), []
@@ -154,7 +154,7 @@ def start_anywhere(recording: DepthSequence, renderer: DepthRenderer, seed: int)
 def _played(
     recording: DepthSequence, frames: Iterable[int | None], rng: np.random.Generator
 ) -> Iterator[tuple[np.ndarray, np.ndarray | None, np.ndarray | None]]:
-    """Depth image, gravity `(3,)` in the optical frame, and true pose of frames; in a frame None nothing is seen."""
+    """Yield depth image, gravity `(3,)` in the optical frame, and true pose of frames; nothing is seen in None."""
     for index in frames:
         if index is None:
             yield np.full(recording.image_shape, np.nan, dtype=np.float32), None, None
@@ -164,7 +164,7 @@ def _played(
 
 
 def _places_of_kidnapping(recording: DepthSequence, rng: np.random.Generator) -> tuple[int, int]:
-    """The first frame before and the first after, far enough apart; `ValueError` where the recording is too short."""
+    """Return the first frame before and the first after, far enough apart; `ValueError` if there are none."""
     last = len(recording) - AFTER
     for _ in range(1_000):
         first, after = int(rng.integers(0, last)), int(rng.integers(0, last + 1))

@@ -1,22 +1,22 @@
-"""Six degrees of freedom side by side: the annealed filter, the paper's, and how well the truth itself fits.
+"""Compare filters in six degrees of freedom: the annealed one, the paper's, and how well the truth itself fits.
 
 A run gives plain lists, one entry a frame, so that runs of several seeds, recordings and offsets can be pooled.
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from course_lib.beyond.being_lost import agreement, judge_refined
+from course_lib.beyond.being_lost import judge_refined
 from course_lib.beyond.six_dof.prediction import MotionPrediction, Rival
 from course_lib.beyond.six_dof.refinement import refine
 from course_lib.beyond.six_dof.schedule import LAYERS, STEPS, pyramid
 from course_lib.depth_mcl.evaluation import pose_errors
 from course_lib.depth_mcl.sequence import DepthSequence, read_sequence
+from course_lib.depth_mcl.status import agreement
 from course_lib.files import temporary_folder
-from course_lib.recordings import SIGMA, Run, run_annealed, run_recovering, run_sequence, system_noise
+from course_lib.recordings import SIGMA, run_sequence, system_noise
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 from courseware.experiments.runner import Outcome, Runner
@@ -32,13 +32,13 @@ class StandingStill(MotionPrediction):
     """A prediction that knows no motion: the cloud lies about the last pose, as wide as for a start."""
 
     def found(self, pose: np.ndarray, seen: bool = True, rivals: Sequence[Rival] = ()) -> None:
-        """The camera is at `pose`; how it came there is forgotten."""
+        """Take the camera to be at `pose`, and forget how it came there."""
         super().found(pose, seen, rivals)
         self.motion, self._lengths = np.zeros(6), []
 
 
 def image_alone(prior: np.ndarray, information: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """In place of `fused`: the pose is the image's in every direction, the covariance Kalman's, (P^-1 + I)^-1."""
+    """Return, in place of `fused`, Kalman's covariance (P^-1 + I)^-1, and the image's pose in every direction."""
     return np.linalg.solve(np.eye(6) + prior @ information, prior), np.eye(6)
 
 
@@ -73,16 +73,12 @@ def require_methods(text: str, known: Sequence[str] = (*METHODS, "recovering", *
 def run_frames(
     method: str, scene_map: SceneMap, sequence: DepthSequence, seed: int, progress: Callable = iter
 ) -> dict[str, list]:
-    """Errors, statuses and renders of every frame of a recording; of `METHODS` or `ABLATIONS`; "floor" has no seed."""
+    """Return errors, statuses and renders of every frame by one of `METHODS` or `ABLATIONS`; "floor" has no seed."""
     if method == "floor":
         return floor_frames(scene_map, sequence, progress)
-    if method == "paper":
-        localized = partial(run_sequence, **system_noise("6", *SIGMA["6"]))
-    elif method == "recovering":
-        localized = run_recovering
-    else:
-        localized = partial(run_annealed, parts=ABLATIONS.get(method, {}))
-    run: Run = localized(scene_map, sequence, seed=seed, progress=progress)
+    parts = ABLATIONS.get(method, {}) if method != "paper" else system_noise("6", *SIGMA["6"])
+    name = "annealed" if method in ABLATIONS else method
+    run = run_sequence(scene_map, sequence, name, seed=seed, progress=progress, **parts)
     position, rotation = pose_errors(run.camera_to_world, sequence.camera_to_world[: len(run.frames)])
     return {
         "position_m": position.tolist(),
@@ -96,7 +92,7 @@ def run_frames(
 
 
 def floor_frames(scene_map: SceneMap, sequence: DepthSequence, progress: Callable = iter) -> dict[str, list]:
-    """What refinement makes of the *true* pose: no estimate agrees better. score: at the truth, before refinement."""
+    """Return the errors of the refined *true* pose: no estimate agrees better. score: before refinement."""
     rows = []
     with DepthRenderer(scene_map, sequence.camera()) as renderer:
         fine = pyramid(renderer)[-1]
@@ -113,7 +109,7 @@ def floor_frames(scene_map: SceneMap, sequence: DepthSequence, progress: Callabl
 
 
 def pooled(runs: Sequence[dict[str, list]]) -> dict[str, float]:
-    """The numbers of a row of the table, of all frames of some runs together."""
+    """Return the numbers of a row of the table, of all frames of some runs together."""
     frames = {key: np.concatenate([run[key] for run in runs]) for key in runs[0]}
     position, rotation, lost = frames["position_m"], frames["rotation_deg"], frames["status"] == "lost"
     wrong = (position > WRONG_POSITION) | (rotation > WRONG_ROTATION_DEG)

@@ -1,4 +1,4 @@
-"""What goes wrong with pairs of panoramas, and what paper 2's method, with the library's own matcher, makes of it.
+"""Trouble pairs of panoramas, and run paper 2's method, with the library's own matcher, on them.
 
 The method has no memory: a good pair has the very answer that it had undisturbed. So it has recovered with the first.
 """
@@ -29,7 +29,7 @@ Pair = tuple[np.ndarray, np.ndarray]
 
 
 def one_dark(pair: Pair, earlier: Pair, before: Pair, rng: np.random.Generator) -> Pair:
-    """Upper or lower, drawn, shows the noise of a covered lens and a few hot pixels."""
+    """Return a pair of which one image, at random, has the noise of a covered lens and a few hot pixels."""
     images, which = list(pair), int(rng.integers(2))
     noise = np.abs(rng.normal(0.0, DARK_NOISE, images[which].shape))
     images[which] = np.minimum(noise, 255).astype(np.uint8)
@@ -38,7 +38,7 @@ def one_dark(pair: Pair, earlier: Pair, before: Pair, rng: np.random.Generator) 
 
 
 def exposure_jump(pair: Pair, earlier: Pair, before: Pair, rng: np.random.Generator) -> Pair:
-    """One camera, drawn, `STOPS` stops brighter or darker, drawn: values are multiplied, and clipped at white."""
+    """Return a pair of which one, at random, is `STOPS` stops brighter or darker: multiplied, and clipped at white."""
     images = list(pair)
     which, factor = int(rng.integers(2)), 2.0 ** (STOPS * rng.choice((-1.0, 1.0)))
     images[which] = np.clip(np.rint(images[which] * factor), 0, 255).astype(np.uint8)
@@ -70,7 +70,7 @@ def room_trouble(detector: str, seed: int, frames: int, shares: Sequence[float])
 def walk_trouble(
     localizer: SemanticLocalizer, pairs: Sequence[Pair], true_poses: np.ndarray, seed: int, shares: Sequence[float]
 ) -> dict:
-    """`room_trouble` of a walk that was photographed; the localizer is asked once for each pair of arrays."""
+    """Return `room_trouble` of a walk that was photographed; the localizer is asked once for each pair of arrays."""
     answers = {}
 
     def localize(upper: np.ndarray, lower: np.ndarray) -> Localization:
@@ -81,7 +81,7 @@ def walk_trouble(
         return answers[key][2]
 
     def run(arrivals: Sequence[Arrival]) -> list[dict]:
-        """What became of every pair that was due: outcome, whether a pose was given, its errors (None without one)."""
+        """Return for every pair that was due: outcome, whether there is a pose, its errors (None without one)."""
         rig, frames = GuardedRig(SimpleNamespace(localize=localize), PERIOD), []
         for arrival, true in zip(arrivals, true_poses, strict=True):
             watched = None if arrival.image is None else rig.localize(*arrival.image, arrival.time)

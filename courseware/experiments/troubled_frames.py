@@ -1,4 +1,4 @@
-"""Which frames of a recording are troubled, and what is counted of them: outcomes, recovery, confident wrong poses."""
+"""Draw which frames of a recording are troubled, and count outcomes, recovery and confident wrong poses."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -103,7 +103,7 @@ class Gate(NamedTuple):
     degrees: float
 
     def holds(self, frame: dict) -> bool:
-        """Whether a pose was given for a frame, and lies within the limits."""
+        """Return whether there is a pose for a frame, and it lies within the limits."""
         known = frame["position_m"] is not None
         return known and frame["position_m"] <= self.metres and frame["rotation_deg"] <= self.degrees
 
@@ -116,7 +116,7 @@ def frames_to_judge(runs: Sequence[tuple[int, int]], n_frames: int) -> list[int]
 
 
 def confident_wrong(frames: Iterable[dict], gate: Gate) -> int:
-    """How many frames' poses were given out as ones to go by, and lie beyond the gate."""
+    """Return how many frames' poses were called reliable, and lie beyond the gate."""
     return sum(bool(frame["confident"]) and not gate.holds(frame) for frame in frames)
 
 
@@ -140,7 +140,7 @@ def summary(results: Sequence[dict], gate: Gate) -> dict:
 
 
 def _row(results: Sequence[dict], k: int, gate: Gate, usual: Gate) -> dict:
-    """The k-th trouble and share, over all recordings, beside what they were undisturbed."""
+    """Return the row of the k-th trouble and share, over all recordings, next to the undisturbed runs."""
     bad, good, judged, beside = [], [], [], []
     for one in results:
         frames, runs = one["troubles"][k]["frames"], one["troubles"][k]["runs"]

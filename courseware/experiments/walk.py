@@ -1,4 +1,4 @@
-"""A depth camera carried by hand through generated rooms: errors in six degrees of freedom, and being lost said.
+"""Carry a depth camera by hand through generated rooms: errors in six degrees of freedom, and being lost.
 
 Every `--every`-th frame, from every offset, is as if the camera had been moved so much faster.
 """

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from course_lib.beyond.being_lost import TrackStatus
+from course_lib.depth_mcl.status import TrackStatus
 from course_lib.rendering.scene_map import SceneMap
 from courseware.plots.corridor_figures import plane_cut
 from courseware.plots.figures import BLUE, ORANGE, VERMILION, new_figure
@@ -19,6 +19,7 @@ _STYLES = {
     "tracked": {"color": BLUE, "marker": "o", "markersize": 3},
     "doubtful": {"color": ORANGE, "marker": "s", "markersize": 4},
     "lost": {"color": VERMILION, "marker": "x", "markersize": 5},
+    "no measurement": {"color": "0.4", "marker": ".", "markersize": 4},
 }
 
 

@@ -1,14 +1,16 @@
 """A guarded filter: exactly the filter where nothing is wrong; where something is, it says so and comes back."""
 
 import pickle
+import sys
 
 import numpy as np
 import pytest
 
-from course_lib.beyond.guarded_depth import OUTCOMES, GuardedLocalizer
+from course_lib.beyond.guarded_depth import OUTCOMES, GuardedLocalizer, status_of
 from course_lib.beyond.lost_and_found.recovery import RecoveringLocalizer
 from course_lib.beyond.six_dof.localizer import AnnealedLocalizer
 from course_lib.beyond.six_dof.poses import motion_between
+from course_lib.depth_mcl.likelihood import ALPHA, compiled_likelihood, likelihood
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer
 from course_lib.geometry import optical_pose
 from tests.rendering.shapes import SMALL
@@ -104,10 +106,31 @@ def test_a_frame_at_fault_or_missed_moves_the_particles_as_no_measurement_does_o
     assert np.array_equal(seen[6].estimate.state, undisturbed[5].estimate.state)
 
 
+def test_another_alpha_shifts_no_status(renderer, monkeypatch):
+    """Images 0.15 m behind the map are wrong, whatever eq. (8)'s alpha and its default are."""
+    still = renderer.render(START)[0]
+    images = [(still + 0.001 * k + 0.15 * (k >= 3)).astype(np.float32) for k in range(6)]
+
+    def outcomes(alpha):
+        guarded = GuardedLocalizer(MonteCarloLocalizer(renderer, 5, [1e-6, 1e-6, 0, 0, 0, 1e-6], alpha))
+        guarded.initialize(START)
+        return [guarded.step(image).outcome for image in images]
+
+    usual = outcomes(ALPHA)
+    assert usual == ["tracked"] * 3 + ["lost"] * 3
+    for function in (likelihood, compiled_likelihood):
+        monkeypatch.setattr(function, "__defaults__", (0.3,))
+    for module in [one for name, one in sys.modules.items() if name.startswith("course_lib") and hasattr(one, "ALPHA")]:
+        monkeypatch.setattr(module, "ALPHA", 0.3)
+    assert outcomes(0.3) == usual
+
+
 def test_after_long_trouble_one_good_frame_is_no_proof(renderer, walk):
     frames = timed(walk[1])
     frames[10:16] = [(np.full(SMALL.shape, np.nan), time) for _, time in frames[10:16]]
-    outcomes = [one.outcome for one in run(renderer, "annealed", frames)]
+    seen = run(renderer, "annealed", frames)
+    outcomes = [one.outcome for one in seen]
+    assert [one.estimate.status for one in seen] == [status_of(one) for one in outcomes], "one word, wherever one looks"
     assert "tracked" not in outcomes[10:18]
     assert outcomes[-1] == "tracked"
 

@@ -37,12 +37,12 @@ def printed(capsys):
 def recorded(corridor_folder, tmp_path):
     """Write some frames of a shipped recording of the corridor to a folder below tmp_path, and return it."""
 
-    def write(name, frames, to, change=lambda depths: None):
+    def write(name, frames, to, change=lambda depths: None, timed=False):
         whole = read_sequence(corridor_folder / name)
         depths = [whole.depth(k) for k in frames]
         change(depths)
-        poses = whole.camera_to_world[list(frames)]
-        write_sequence(tmp_path / to, whole.intrinsics, list(frames), depths, poses, up="z")
+        poses, times = whole.camera_to_world[list(frames)], whole.times[list(frames)] if timed else None
+        write_sequence(tmp_path / to, whole.intrinsics, list(frames), depths, poses, times, up="z")
         return tmp_path / to
 
     return write

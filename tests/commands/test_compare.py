@@ -1,12 +1,6 @@
 """`compare`: filters in six degrees of freedom side by side."""
 
-import json
-from subprocess import CompletedProcess
-
 import pytest
-
-from courseware.cli import main
-from courseware.commands import compare
 
 
 @pytest.fixture
@@ -29,18 +23,3 @@ def test_the_table_has_a_row_for_each_method_and_thinning(words, tmp_path, told,
     assert rows["annealed and refined, every 3"]["median_position_m"] < 0.04
     assert rows["floor: refined from the truth"]["most_renders"] == 5
     assert len((tmp_path / "out" / "compare.jsonl").read_text().splitlines()) == 2 * 4 + 1, "each run once"
-
-
-def test_icp_stands_beside_them_pooled_as_they_are(words, tmp_path, told, capsys, monkeypatch):
-    """Open3D lives in an environment of its own: here its errors are given."""
-    errors = {"ICP 0.15, 0.05 m": {"1": {"position_m": [0.01, 0.02, 0.5], "rotation_deg": [1.0, 1.0, 1.0]}}}
-    monkeypatch.setattr(compare, "REPOSITORY", tmp_path)
-    monkeypatch.setattr("subprocess.run", lambda *words, **_: CompletedProcess(words, 0, stdout=json.dumps(errors)))
-    (tmp_path / ".bench").mkdir()
-    words += ["--methods", "floor", "--icp"]
-    row = told(*words)["rows"]["ICP 0.15, 0.05 m"]
-    assert (row["frames"], row["wrong"], row["wrong_called_lost"]) == (3, 1, 0)
-    assert row["within_5cm_5deg_percent"] == pytest.approx(200 / 3)
-    (tmp_path / ".bench").rmdir()
-    assert main(words) == 2
-    assert "tools.bench --quick installs it" in capsys.readouterr().err

@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 import trimesh
 
+from course_lib.beyond import GuardedLocalizer, RecoveringLocalizer
+from course_lib.beyond.guarded_depth import status_of
 from course_lib.depth_mcl.sequence import read_sequence, write_sequence
 from course_lib.depth_mcl.sequence_files import read_tum
 from course_lib.geometry import optical_pose, rotation_to_z_up, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
+from course_lib.rendering.scene_map import SceneMap
 from courseware.cli import main
 from courseware.commands.localize_report import believed
 from tests.beyond.six_dof.test_calibration import STATES
@@ -56,9 +59,31 @@ def test_frames_at_fault_are_named_and_not_used(corridor_folder, tmp_path, recor
     assert "1 frames held no measurement" in said
     rows = rows_of(tmp_path / "out" / "localize.csv")
     assert [row["fault"] for row in rows] == ["", "", "", "", "repeated", "", "saturated", "no return", ""]
-    assert all(rows[k]["status"] != "tracked" for k in (4, 6, 7))
+    assert all(rows[k]["status"] == "no measurement" for k in (4, 6, 7))
     printed(*arguments(corridor_folder, frames=4, out=tmp_path / "good", **options))
     assert [row["x_m"] for row in rows[:4]] == [row["x_m"] for row in rows_of(tmp_path / "good" / "localize.csv")]
+
+
+def test_the_command_treats_every_frame_as_the_watch_of_the_readme_does(corridor_folder, recorded, tmp_path, printed):
+    """A frame that never came, and a frozen image: the same outcomes and the same poses."""
+
+    def freeze(depths):
+        depths[5] = depths[4]
+
+    folder = recorded("hand", [0, 1, 2, 4, 5, 6, 7, 8, 9], "troubled", freeze, timed=True)
+    recording = read_sequence(folder)
+    words = arguments(corridor_folder, folder, seed=1, particles=60, recover=True, out=tmp_path / "out")
+    assert "1 frames were at fault and not used: repeated 1" in printed(*words)
+    with DepthRenderer(SceneMap.load(corridor_folder / "map.ply"), recording.camera()) as renderer:
+        robot = GuardedLocalizer(RecoveringLocalizer(renderer, 60, seed=1), period=recording.period)
+        robot.initialize(state_from_optical_pose(recording.camera_to_world[0]))
+        seen = [robot.step(recording.depth(k), time) for k, time in enumerate(recording.times)]
+    assert [len(frame.missed) for frame in seen] == [0, 0, 0, 1, 0, 0, 0, 0, 0]
+    rows = rows_of(tmp_path / "out" / "localize.csv")
+    assert [row["fault"] or row["status"] for row in rows] == [frame.outcome for frame in seen]
+    assert [row["status"] for row in rows] == [status_of(frame.outcome) for frame in seen]
+    poses = [[float(row[f"{axis}_m"]) for axis in "xyz"] for row in rows]
+    assert np.allclose(poses, [frame.estimate.state[:3] for frame in seen], atol=1e-5)
 
 
 @pytest.mark.parametrize(("method", "metres", "degrees"), [("paper", 0.3, 8), ("annealed", 0.04, 0.5)])
@@ -156,10 +181,12 @@ def test_a_wrong_focal_length_is_told_in_one_sentence(tmp_path, told, factor):
     ("statuses", "line"),
     [
         ("TTTT", "tracked in all 4 frames"),
+        ("TTND", "tracked in 2 of 4 frames, doubtful in 1, predicted only 1"),
+        ("TLND", "lost from frame 20 on (1 of 4 frames; tracked 1, doubtful 1, predicted only 1)"),
         ("TLLD", "lost from frame 20 on (2 of 4 frames; tracked 1, doubtful 1)"),
         ("TLTLLT", "lost in 2 stretches between frames 20 and 50 (3 of 6 frames; tracked 3, doubtful 0)"),
     ],
 )
 def test_one_line_says_what_is_believed(statuses, line):
-    names = {"T": "tracked", "D": "doubtful", "L": "lost"}
+    names = {"T": "tracked", "D": "doubtful", "L": "lost", "N": "no measurement"}
     assert believed([10 * (i + 1) for i in range(len(statuses))], [names[s] for s in statuses]) == line

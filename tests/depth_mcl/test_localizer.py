@@ -124,17 +124,17 @@ def test_a_frame_without_measurement_moves_the_particles_says_so_and_the_filter_
     assert (steps[:, 2:5] == 0).all()
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert localizer.step(room_depth(SMALL, true[2])[0]).status == "ok"
+        assert localizer.step(room_depth(SMALL, true[2])[0]).status == "tracked"
 
 
-def test_with_three_components_good_frames_are_ok_and_lost_ones_doubtful(renderer):
-    assert {e.status for e in run(MonteCarloLocalizer(renderer, 150, SIGMA, seed=1), walk(10))} == {"ok"}
+def test_with_three_components_good_frames_are_tracked_and_wrong_ones_lost(renderer):
+    assert {e.status for e in run(MonteCarloLocalizer(renderer, 150, SIGMA, seed=1), walk(10))} == {"tracked"}
     lost = MonteCarloLocalizer(renderer, 40, SIGMA)
     lost.initialize(START + np.array([-2.0, 1.5, 0, 0, 0, 1.0]))
-    assert lost.step(room_depth(SMALL, START)[0]).status == "doubtful"
+    assert lost.step(room_depth(SMALL, START)[0]).status == "lost"
 
 
-def test_with_six_components_and_few_particles_wrong_poses_are_not_ok():
+def test_with_six_components_and_few_particles_wrong_poses_are_not_tracked():
     """As wrong as such a filter becomes: metres, in two of three frames."""
     true = START + np.sin(np.arange(40)[:, None] * [0.15, 0.1, 0.15, 0.2, 0.2, 0.15]) * [1.0, 0.6, 0.3, 0.1, 0.15, 0.5]
     with DepthRenderer(furnished_room(), SMALL) as renderer:
@@ -147,7 +147,7 @@ def test_with_six_components_and_few_particles_wrong_poses_are_not_ok():
                 if np.linalg.norm(estimate.state[:3] - state[:3]) > 0.2:
                     wrong.append(estimate.status)
     assert len(wrong) > 40
-    assert wrong.count("ok") <= 0.05 * len(wrong)
+    assert wrong.count("tracked") <= 0.05 * len(wrong)
 
 
 @pytest.mark.parametrize("motion", [BODY_AXES, WORLD_AXES, TANGENT_SPACE])
@@ -245,7 +245,7 @@ def test_what_cannot_be_a_setting_a_start_or_a_frame_is_named(renderer):
         with pytest.raises(ValueError, match=rf"{name} must|sigma needs|scheme must"):
             MonteCarloLocalizer(renderer, **{name: value})
     for setting in ({"alpha": 0.2}, {"beta": 0.02}):
-        with pytest.raises(ValueError, match="beside a weighting"):
+        with pytest.raises(ValueError, match="leave them out"):
             MonteCarloLocalizer(renderer, weighting=paper_weighting(), **setting)
     localizer = MonteCarloLocalizer(renderer, 10, SIGMA)
     with pytest.raises(RuntimeError, match="initialize"):

@@ -1,4 +1,4 @@
-"""Runs that are made to get lost, on which the limits of `beyond.tracking` were chosen, are never called tracked.
+"""Runs that are made to get lost, on which the limits of `depth_mcl.status` were chosen, are never called tracked.
 
 Recordings and seeds from 10,000 up are development data. Images are thinned and few particles used, for time.
 """

@@ -1,4 +1,4 @@
-"""Where a camera can be: clear of all surfaces, in front of enough of them, and on the side that was scanned.
+"""Find where a camera can be: clear of all surfaces, in front of enough of them, and on the side that was scanned.
 
 A map of a real room is open, because the scanner did not see everything. So we do not ask whether a place is enclosed.
 We ask whether a camera there could have seen what the map shows.

@@ -1,4 +1,4 @@
-"""Where is the camera when nobody says? Compare its image with stored views of all free space, and follow the best.
+"""Find the camera when nobody says where it is: compare its image with stored views of all free space.
 
     search = GlobalSearch(renderer, seed=0)
     for depth, gravity in recording:
@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.being_lost import REFINED_LOST, agreement
+from course_lib.beyond.being_lost import REFINED_LOST
 from course_lib.beyond.lost_and_found.free_space import FreeSpace
 from course_lib.beyond.lost_and_found.image_gravity import UNKNOWN_TILT_SIGMA, down_from_image, is_upright
 from course_lib.beyond.lost_and_found.stored_views import MAX_PLACES, StoredViews, look_at
@@ -21,6 +21,7 @@ from course_lib.beyond.six_dof.poses import distinct, lengths, local
 from course_lib.beyond.six_dof.prediction import MAX_SPREAD, MotionPrediction
 from course_lib.beyond.six_dof.schedule import pyramid
 from course_lib.depth_mcl.one_at_a_time import one_at_a_time
+from course_lib.depth_mcl.status import agreement
 from course_lib.geometry import optical_pose, rotation_exp, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.sensor import subsample_depth
@@ -51,18 +52,18 @@ CLEAR_GAP = 0.08  # of evidence, between the best candidate and the next elsewhe
 class PoseCandidate(NamedTuple):
     """A pose that the camera may have."""
 
-    state: np.ndarray  # `(6,)`.
-    evidence: float  # Running mean of agreeing - 3 through over its frames: 1 at best.
-    frames: int  # How many frames it has explained.
+    state: np.ndarray  # `(6,)`
+    evidence: float  # running mean of agreeing - 3 through over its frames: 1 at best
+    frames: int  # how many frames it has explained
 
 
 class PoseCandidates(NamedTuple):
     """The answer of a search after the frames so far."""
 
     status: Literal["found", "several", "searching"]  # one pose explains the frames; more than one; none long enough
-    poses: list[PoseCandidate]  # Best first; no two are at the same place.
-    particles: int  # How many poses were compared with this frame by their stored views.
-    renders: int  # How many images were drawn in this frame.
+    poses: list[PoseCandidate]  # best first; no two are at the same place
+    particles: int  # how many poses were compared with this frame by their stored views
+    renders: int  # how many images were drawn in this frame
 
 
 class _Followed(MotionPrediction):
@@ -106,7 +107,7 @@ class GlobalSearch:
 
     @one_at_a_time
     def forget(self) -> None:
-        """Start anew, without candidates."""
+        """Start again, without candidates."""
         self._followed = []
 
     @one_at_a_time

@@ -1,4 +1,4 @@
-"""Which way is down, when nobody measured it? Floors are level and walls are upright, and a depth image shows them.
+"""Measure which way is down in a depth image, which shows that floors are level and walls are upright.
 
 Every pixel's surface has a normal n. If d is down, n is parallel to d on floors, tables and ceilings, and at a right
 angle to it on walls. So the d that most normals agree with is down (the idea of a Manhattan world: Coughlan and Yuille,

@@ -1,4 +1,4 @@
-"""Lost, or carried away while it could not see: the filter notices, and searches.
+"""Notice that the filter is lost, or was carried away while it could not see, and search.
 
 A global search begins if the filter was lost for some frames in a row, or if the camera was covered. The filter goes on
 and suggests its pose as one candidate among others. The search decides.
@@ -25,24 +25,27 @@ Mode = Literal["following", "searching", "found again"]  # the last if the searc
 
 
 class RecoveryEstimate(NamedTuple):
-    """What one frame gave."""
+    """The result of one frame."""
 
-    estimate: AnnealedEstimate  # Of the filter; at best "doubtful" while a search goes on or the start is unconfirmed.
+    estimate: AnnealedEstimate  # at best "doubtful" while a search goes on or the start is unconfirmed
     mode: Mode
-    candidates: PoseCandidates | None  # The answer of the search, while there is one.
+    candidates: PoseCandidates | None  # the answer of the search, while there is one
 
 
 class RecoveringLocalizer:
-    """`AnnealedLocalizer` that searches when it is lost. search: arguments of `GlobalSearch`; others as there.
+    """Follow the camera as `AnnealedLocalizer` does, and search when it is lost. search: arguments of `GlobalSearch`.
 
     A start may be wrong, and one image can agree by chance. So the status is at best "doubtful" until `CONFIRMED` good
     frames after it. The search is made when it is needed for the first time. It raises `ValueError` for a map without
     free space.
     """
 
+    takes = frozenset({"increment", "gravity"})  # what `step` can use in addition to the image
+
     def __init__(self, renderer: DepthRenderer, n_particles: int = 200, *, seed: int = 0, **search: object) -> None:
         self.renderer = renderer
         self.localizer = AnnealedLocalizer(renderer, n_particles, seed=seed)
+        self.motion = self.localizer.motion
         self.searching = False
         self._search: GlobalSearch | None = None
         self._of_search = {"seed": seed, **search}
@@ -52,7 +55,7 @@ class RecoveringLocalizer:
 
     @property
     def search(self) -> GlobalSearch:
-        """The search, made at first use."""
+        """Return the search, made at first use."""
         if self._search is None:
             self._search = GlobalSearch(self.renderer, **self._of_search)
         return self._search
@@ -98,6 +101,7 @@ class RecoveringLocalizer:
             estimate = self.localizer.step(depth)
         elif mode == "searching":
             estimate = _doubtful(estimate)
+        estimate = estimate._replace(renders=estimate.renders + candidates.renders)
         return RecoveryEstimate(estimate, mode, candidates)
 
     def _decide(self, estimate: AnnealedEstimate, candidates: PoseCandidates) -> Mode:

@@ -1,4 +1,4 @@
-"""What a map looks like from some thousands of places, stored once, so that a frame can be compared with all of them.
+"""Store how a map looks from some thousands of places, so that a frame can be compared with all of them.
 
 Gravity is known, so a camera at a place can only be turned about the vertical. Therefore one image of all directions is
 enough for all its headings: a heading shifts that image by whole columns. An image of the camera is compared with every
@@ -26,9 +26,9 @@ _AT_ONCE = 250  # places whose rays are cast together
 class Look(NamedTuple):
     """A camera's image on the sphere, upright and of heading 0: its P measured pixels."""
 
-    rows: np.ndarray  # `(P,)` of the stored images.
-    columns: np.ndarray  # `(P,)` of the stored images.
-    ranges: np.ndarray  # `(P,)` metres from the camera, along the ray.
+    rows: np.ndarray  # `(P,)` of the stored images
+    columns: np.ndarray  # `(P,)` of the stored images
+    ranges: np.ndarray  # `(P,)` metres from the camera, along the ray
 
 
 class StoredViews:

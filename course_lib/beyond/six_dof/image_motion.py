@@ -15,12 +15,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.being_lost import MIN_PIXELS
 from course_lib.beyond.six_dof.covariance import PREDICTED, RIVAL_SCALE, SCALE, fused, information, with_rivals
 from course_lib.beyond.six_dof.poses import distinct, local, retract
 from course_lib.beyond.six_dof.prediction import MeasuredMotion, Rival
 from course_lib.beyond.six_dof.refinement import NormalEquations, solve, surface_normals
 from course_lib.beyond.six_dof.schedule import COARSE, MIDDLE
+from course_lib.depth_mcl.status import MIN_PIXELS
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.compiled import compiled
 

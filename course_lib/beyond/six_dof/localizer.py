@@ -22,19 +22,11 @@ are states, as `MonteCarloLocalizer` gives them.
 
 import warnings
 from collections.abc import Callable
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.being_lost import (
-    NOTHING_MEASURED,
-    Agreement,
-    TrackJudge,
-    TrackStatus,
-    agreement,
-    is_known,
-    judge_refined,
-)
+from course_lib.beyond.being_lost import TrackJudge, judge_refined
 from course_lib.beyond.six_dof.calibration import Calibration, CalibrationCheck
 from course_lib.beyond.six_dof.covariance import (
     PREDICTED,
@@ -61,6 +53,7 @@ from course_lib.depth_mcl.likelihood import checked_image, valid_pixels
 from course_lib.depth_mcl.localizer import NoMeasurementWarning, checked_start
 from course_lib.depth_mcl.motion import TANGENT_SPACE
 from course_lib.depth_mcl.one_at_a_time import one_at_a_time
+from course_lib.depth_mcl.status import NOTHING_MEASURED, Agreement, TrackStatus, agreement, is_known
 from course_lib.depth_mcl.uncertainty import Tempered, temper
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
@@ -84,8 +77,8 @@ class AnnealedEstimate(NamedTuple):
     ess: float  # Effective sample size of the last layer's weights.
     particles: np.ndarray  # `(N, 6)` of the last layer.
     weights: np.ndarray  # `(N,)` of these particles.
-    status: TrackStatus | Literal["no measurement"]  # Whether the state is known, by being_lost.py.
-    error_covariance: np.ndarray  # `(6, 6)`, same units and axes: of the error to expect while "tracked".
+    status: TrackStatus  # what being_lost.py says of the state
+    error_covariance: np.ndarray  # `(6, 6)`, the same units and axes: of the error to expect while "tracked"
     agreement: Agreement  # How the measured image agrees with the map as seen from the state.
     layers: tuple[Tempered, ...]  # Weights, sharpness and effective sample size of every layer, in order.
     renders: int  # How many images were rendered for this frame.
@@ -110,6 +103,8 @@ class AnnealedLocalizer:
     particle). rivals: how many other poses are kept. fuse: joins prediction and image. prediction: called with the
     first pose. image_motion: whether two images measure the motion. Raises `ValueError` for bad numbers, or no layer.
     """
+
+    takes = frozenset({"increment"})  # what `step` can use beside the image
 
     def __init__(
         self,

@@ -15,11 +15,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from course_lib.beyond.being_lost import Agreement, agreement
 from course_lib.beyond.six_dof.poses import distinct, retract
 from course_lib.beyond.six_dof.prediction import MeasuredMotion, MotionPrediction, Rival
 from course_lib.beyond.six_dof.schedule import Layer, Level, Step
 from course_lib.depth_mcl.particle_filter import resample
+from course_lib.depth_mcl.status import Agreement, agreement
 from course_lib.depth_mcl.uncertainty import Tempered, temper
 
 # Chosen on the kitchen and the shipped corridor; those of rivals also on walks through rooms (seeds 10,041 to 10,066).

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from course_lib.beyond.being_lost import sigmas
 from course_lib.beyond.six_dof.covariance import (
     carried,
     fused,
@@ -14,6 +13,7 @@ from course_lib.beyond.six_dof.covariance import (
 )
 from course_lib.beyond.six_dof.poses import local, retract
 from course_lib.beyond.six_dof.prediction import Rival
+from course_lib.depth_mcl.status import sigmas
 from course_lib.geometry import optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 from tests.rendering.shapes import SMALL, furnished_room, rough_wall, wall
