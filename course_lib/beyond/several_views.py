@@ -23,7 +23,7 @@ from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis, rotations, scene_of
 from course_lib.depth_mcl.one_at_a_time import one_at_a_time
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.pose.localization import OK, UNABLE, Status
+from course_lib.spherical_stereo.outcomes import Reason, Status
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
@@ -68,7 +68,7 @@ class Track(NamedTuple):
 
     pose: Pose2D | None  # of the last view; None if unable
     status: Status
-    reason: str | None
+    reason: Reason | None  # why there is no pose
     confidence: float  # 0 to 1
     covariance: np.ndarray | None  # `(3, 3)`
     alternatives: tuple[tuple[Pose2D, float], ...]  # all poses that are believed, with their shares, best first
@@ -179,5 +179,5 @@ class SemanticTracker:
                 confidence *= plausibility(best.view) if n_matches >= MIN_INLIERS else 0.0
         reason = why_unable(len(alternatives), n_matches, confidence, self.min_confidence)
         if reason is not None:
-            return Track(None, UNABLE, reason, confidence, None, alternatives)
-        return Track(alternatives[0][0], OK, None, confidence, best.covariance, alternatives)
+            return Track(None, Status.UNABLE, reason, confidence, None, alternatives)
+        return Track(alternatives[0][0], Status.OK, None, confidence, best.covariance, alternatives)

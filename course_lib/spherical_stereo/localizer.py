@@ -13,13 +13,12 @@ from course_lib.spherical_stereo.detection.detected_object import boxes_on, cano
 from course_lib.spherical_stereo.detection.detector import Detector, find_objects
 from course_lib.spherical_stereo.matching.features import MAX_TURN
 from course_lib.spherical_stereo.matching.object_matching import MIN_FEATURES, match_views, matched_indices
+from course_lib.spherical_stereo.outcomes import ObjectOutcome, Reason, Status
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
-from course_lib.spherical_stereo.pose import localization as outcomes
 from course_lib.spherical_stereo.pose import rigid_fit
-from course_lib.spherical_stereo.pose.localization import OK, Localization, PlacedObject
+from course_lib.spherical_stereo.pose.localization import Localization, PlacedObject
 from course_lib.spherical_stereo.pose.rigid_fit import fit_rigid_2d
 from course_lib.spherical_stereo.ranging.object_positions import DISTANCES, Distance, Noise, max_range, position_objects
-from course_lib.spherical_stereo.ranging.triangulation import DIVERGING
 from course_lib.spherical_stereo.semantic_map.association import (
     Association,
     Observation,
@@ -132,20 +131,20 @@ class SemanticLocalizer:
         """2.3: find out which object of the upper image is which of the lower one."""
         blank = [name for name, view in (("upper", found.upper), ("lower", found.lower)) if view.is_blank]
         if blank:
-            return found.unable(outcomes.BLANK, f"the {' and the '.join(blank)} image is black: is a lens covered?")
+            return found.unable(Reason.BLANK, f"the {' and the '.join(blank)} image is black: is a lens covered?")
         options = {"min_features": MIN_FEATURES, "check_alignment": True} if self.reject_implausible else {}
         matching = match_views(found.upper, found.lower, self.rig, **options)
         turn, agreeing = matching.alignment
         if not matching.alignment.of_one_moment:
             return found.unable(
-                outcomes.MOMENTS,
+                Reason.MOMENTS,
                 f"only {agreeing:.0%} of the features matched between the two images agree on how the cameras stand to "
                 "each other: were they taken at one moment, with the rig standing still?",
             )
         if not matching.alignment.is_upright:
             roll, pitch, yaw = np.degrees(turn)
             return found.unable(
-                outcomes.TURNED,
+                Reason.TURNED,
                 f"the lower camera is turned against the upper one, by {roll:.1f} degrees of roll, {pitch:.1f} of "
                 f"pitch and {yaw:.1f} of yaw; {np.degrees(MAX_TURN):.1f} are allowed: mend or calibrate the rig",
                 turn=turn,
@@ -162,9 +161,9 @@ class SemanticLocalizer:
         for (i, j), (outcome, position, covariance) in zip(pairs, positions, strict=True):
             one = found.upper.detections[i]
             label, index = canonical_label(one.label), None
-            if outcome == OK and label not in self.semantic_map.labels:
-                outcome = outcomes.UNMAPPED
-            elif outcome == OK:
+            if outcome == ObjectOutcome.OK and label not in self.semantic_map.labels:
+                outcome = ObjectOutcome.UNMAPPED
+            elif outcome == ObjectOutcome.OK:
                 index = len(observations)
                 x, y = (float(value) for value in position[:2])
                 observations.append(Observation(label, x, y, one.hue, one.saturation, covariance))
@@ -176,7 +175,7 @@ class SemanticLocalizer:
     def _associate(self, found: Localization) -> Localization:
         """2.5: pair the observations with landmarks."""
         if not found.observations:
-            return found.unable(rigid_fit.TOO_FEW_PAIRS, "there is no observation to match to the map")
+            return found.unable(Reason.TOO_FEW_PAIRS, "there is no observation to match to the map")
         how = {"weights": self.weights, "distance_term": self.distance_term}
         return replace(found, association=self.association(found.observations, self.semantic_map, **how))
 
@@ -200,18 +199,18 @@ class SemanticLocalizer:
         if noise is not None:
             found = replace(found, statistics=rigid_fit.residual_statistics(pose, source, target, noise, covariances))
         if weighed:
-            return replace(found, pose=pose, status=OK, covariance=found.alternatives[0].covariance)
+            return replace(found, pose=pose, status=Status.OK, covariance=found.alternatives[0].covariance)
         if noise is None:
-            return replace(found, pose=pose, status=OK)
+            return replace(found, pose=pose, status=Status.OK)
         if self.reject_implausible and found.statistics.contradict_the_pose:
             return found.unable(
-                outcomes.IMPLAUSIBLE,
+                Reason.IMPLAUSIBLE,
                 f"the {len(source)} objects miss their landmarks by {found.rms_residual:.2f} m (root mean square), and "
                 f"{found.statistics.expected_rms:.2f} m may be expected: wrong pairs, a wrong baseline, or another map",
                 rejected_pose=pose,
             )
         covariance = rigid_fit.fit_covariance(pose, source, target, covariances=covariances, noise=noise)
-        return replace(found, pose=pose, status=OK, covariance=covariance)
+        return replace(found, pose=pose, status=Status.OK, covariance=covariance)
 
 
 def _walk(found: Localization, steps: Sequence[Callable[[Localization], Localization]]) -> Localization:
@@ -230,17 +229,17 @@ def _too_few(found: Localization) -> tuple[str, str] | None:
     placed = [one for one in found.objects if np.isfinite(one.position).all()]
     seen = f"{n_upper} objects detected in the upper image, {n_lower} in the lower one"
     if min(n_upper, n_lower) < 2:
-        return (outcomes.ONE_DETECTION if min(n_upper, n_lower) else outcomes.NO_DETECTIONS), seen
+        return (Reason.ONE_DETECTION if min(n_upper, n_lower) else Reason.NO_DETECTIONS), seen
     if len(found.objects) < 2:
-        return outcomes.TOO_FEW_MATCHED, f"{seen}; {len(found.objects)} seen in both"
-    if all(one.outcome == DIVERGING for one in found.objects):
-        return outcomes.SWAPPED, (
+        return Reason.TOO_FEW_IN_BOTH, f"{seen}; {len(found.objects)} seen in both"
+    if all(one.outcome == ObjectOutcome.DIVERGING for one in found.objects):
+        return Reason.SWAPPED, (
             f"all {len(found.objects)} objects appear higher to the upper camera than to the lower one: "
             "give the two sides the other way round"
         )
     if len(placed) < 2:
         unplaced = "; ".join(f"{one.label}: {one.outcome}" for one in found.objects if np.isnan(one.position).any())
-        return outcomes.TOO_FEW_PLACED, f"{len(placed)} of {len(found.objects)} objects has a distance ({unplaced})"
+        return Reason.TOO_FEW_DISTANCES, f"{len(placed)} of {len(found.objects)} objects has a distance ({unplaced})"
     if not found.observations:
-        return outcomes.UNMAPPED_ONLY, f"the map holds none of: {', '.join(sorted({one.label for one in placed}))}"
+        return Reason.UNMAPPED_ONLY, f"the map holds none of: {', '.join(sorted({one.label for one in placed}))}"
     return None

@@ -17,10 +17,11 @@ from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
 from course_lib.spherical_stereo.detection.detected_object import Detection, box_centre
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.outcomes import ObjectOutcome
 from course_lib.spherical_stereo.panorama import pixel_to_direction
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.ranging.object_positions import disparity_distance
-from course_lib.spherical_stereo.ranging.triangulation import OK, object_position, triangulation_outcome
+from course_lib.spherical_stereo.ranging.triangulation import object_position, triangulation_outcome
 from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, TrueObject, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 from courseware.experiments import bearing_only as directions
@@ -250,7 +251,7 @@ def range_errors(
             rays = [pixel_to_direction(box_centre(box), *one.size) for box in boxes]
             if distance == "disparity":
                 measured = np.nan_to_num(disparity_distance(match, *one.size, baseline).horizontal_range, nan=np.inf)
-            elif triangulation_outcome(*rays) == OK:
+            elif triangulation_outcome(*rays) == ObjectOutcome.OK:
                 measured = float(np.linalg.norm(object_position(*rays, baseline)[:2]))
             if true < MAX_RANGE:
                 errors.append(abs(measured - true) / true)

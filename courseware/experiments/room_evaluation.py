@@ -7,7 +7,8 @@ import numpy as np
 
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.detection.detected_object import Detection, box_iou, canonical_label
-from course_lib.spherical_stereo.pose.localization import OK, Localization
+from course_lib.spherical_stereo.outcomes import Status
+from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.recording import TrueObject
 
@@ -65,7 +66,7 @@ def outcome(localization: Localization, true_pose: Sequence[float], true_landmar
     it has no error. Source: paper 2, table 2.
     """
     wrong = wrong_pairs(localization, true_landmarks)
-    if localization.status != OK or len(localization.used_pairs) < MIN_PAIRS:
+    if localization.status != Status.OK or len(localization.used_pairs) < MIN_PAIRS:
         return PoseOutcome(UNABLE, *pose_errors(None, true_pose))
     errors = pose_errors(localization.pose, true_pose)
     return PoseOutcome(CORRECT if not wrong and max(errors[:2]) <= MAX_ERROR else INCORRECT, *errors)

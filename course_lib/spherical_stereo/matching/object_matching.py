@@ -15,16 +15,10 @@ from course_lib.spherical_stereo.detection.detected_object import DetectionError
 from course_lib.spherical_stereo.matching import features
 from course_lib.spherical_stereo.matching.epipolar import EpipolarPairs, allowed_by_rig, best_pairs, epipolar_pairs
 from course_lib.spherical_stereo.matching.features import Alignment, check_not_swapped, find_features
+from course_lib.spherical_stereo.outcomes import NoPartner
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
 
 MIN_FEATURES = 3  # matched features that make one object; one alone may be an accident (the paper has no number)
-
-# Reasons why an object has no partner.
-CLASS_NOT_IN_OTHER = "class not in the other image"
-NO_MATCHES = "no matches"  # no feature in common with any object of its class
-TOO_FEW = "too few matches"  # fewer in common than were asked for
-TIE = "tie"  # two partners with equally many matches
-PARTNER_TAKEN = "partner taken"  # all with which it shares features went to better ones
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +38,11 @@ class ObjectMatch:
 
 
 class Unmatched(NamedTuple):
-    """A detection without partner: side ("upper" or "lower"), its index there, and one of the reasons above."""
+    """A detection without a partner in the other image."""
 
-    side: str
-    index: int
-    reason: str
+    side: str  # "upper" or "lower"
+    index: int  # among the detections of its side
+    reason: NoPartner
 
 
 class StereoMatching(NamedTuple):
@@ -118,13 +112,13 @@ def match_views(
         most = counts.max(axis=1 - side, initial=0)
         for index in sorted(set(range(len(labels[side]))) - {pair[side] for pair in chosen}):
             if labels[side][index] not in labels[1 - side]:
-                reason = CLASS_NOT_IN_OTHER
+                reason = NoPartner.CLASS_NOT_IN_OTHER
             elif index in tied[side]:
-                reason = TIE
+                reason = NoPartner.TIE
             elif most[index] < min_features:
-                reason = TOO_FEW if most[index] else NO_MATCHES
+                reason = NoPartner.TOO_FEW_FEATURES if most[index] else NoPartner.NO_MATCHES
             else:
-                reason = PARTNER_TAKEN
+                reason = NoPartner.PARTNER_TAKEN
             unmatched.append(Unmatched(name, index, reason))
     return StereoMatching(matches, unmatched, alignment)
 

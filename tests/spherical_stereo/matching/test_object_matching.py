@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from course_lib.spherical_stereo.matching import features as feature_matching
-from course_lib.spherical_stereo.matching import object_matching as reasons
 from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
 from course_lib.spherical_stereo.matching.features import PanoramaFeatures, SwappedImagesError, check_not_swapped
 from course_lib.spherical_stereo.matching.object_matching import match_objects, match_views, pair_by_most_matches
+from course_lib.spherical_stereo.outcomes import NoPartner
 from course_lib.spherical_stereo.panorama import StereoRig, View, azimuth_elevation_of_pixel, open_view
 from tests.spherical_stereo.stereo_scene import BASELINE, HEIGHT, WIDTH, Seen, scene
 
@@ -57,10 +57,10 @@ def test_every_object_finds_itself_by_features_in_its_boxes_that_obey_the_epipol
     ("upper", "lower", "n_matches", "unmatched"),
     [
         (UPPER_SEEN, LOWER_SEEN, 8, []),
-        (UPPER_SEEN, [*LOWER_SEEN, LOWER_SEEN[0]], 7, [(*one, reasons.TIE) for one in TIED]),
-        ([*UPPER_SEEN, IN_THE_AIR], LOWER_SEEN, 8, [("upper", 8, reasons.NO_MATCHES)]),
-        ([*UPPER_SEEN, UPPER_HALF], LOWER_SEEN, 8, [("upper", 8, reasons.PARTNER_TAKEN)]),
-        (UPPER_SEEN, WITHOUT_CABINET, 7, [("upper", 7, reasons.CLASS_NOT_IN_OTHER)]),
+        (UPPER_SEEN, [*LOWER_SEEN, LOWER_SEEN[0]], 7, [(*one, NoPartner.TIE) for one in TIED]),
+        ([*UPPER_SEEN, IN_THE_AIR], LOWER_SEEN, 8, [("upper", 8, NoPartner.NO_MATCHES)]),
+        ([*UPPER_SEEN, UPPER_HALF], LOWER_SEEN, 8, [("upper", 8, NoPartner.PARTNER_TAKEN)]),
+        (UPPER_SEEN, WITHOUT_CABINET, 7, [("upper", 7, NoPartner.CLASS_NOT_IN_OTHER)]),
     ],
 )
 def test_a_detection_without_partner_says_why(features, upper, lower, n_matches, unmatched):
@@ -87,7 +87,7 @@ def test_an_object_needs_as_many_features_as_are_asked_for(features):
     fewest = min(counts.values()) + 1
     matching = match_scene(features, min_features=fewest)
     assert {m.upper for m in matching.matches} == {i for i, n in counts.items() if n >= fewest}
-    assert {item.reason for item in matching.unmatched} == {reasons.TOO_FEW}
+    assert {item.reason for item in matching.unmatched} == {NoPartner.TOO_FEW_FEATURES}
 
 
 def test_whole_panoramas_match_mostly_at_equal_azimuth(features):
