@@ -62,7 +62,8 @@ def read_image_list(folder: str | Path) -> list[dict]:
 def labelled_images(folder: str | Path) -> Iterator[tuple[np.ndarray, list[TrueObject]]]:
     """Every image `(H, W, 3)` BGR of a folder with everything that can be seen on it."""
     for image in read_image_list(folder):
-        yield read_panorama(Path(folder) / image["file"]), [true_object(entry) for entry in image["objects"]]
+        things = [true_object(entry) for entry in image["objects"]]
+        yield read_panorama(Path(folder) / image["file"]).image, things
 
 
 def _photograph_room(folder: Path, seed: int, count: int) -> list[dict]:

@@ -19,6 +19,7 @@ from course_lib.spherical_stereo.pose import rigid_fit
 from course_lib.spherical_stereo.pose.localization import Localization, PlacedObject
 from course_lib.spherical_stereo.pose.rigid_fit import fit_rigid_2d
 from course_lib.spherical_stereo.ranging.object_positions import DISTANCES, Distance, Noise, max_range, position_objects
+from course_lib.spherical_stereo.recording import StereoBoxes
 from course_lib.spherical_stereo.semantic_map.association import (
     Association,
     Observation,
@@ -37,8 +38,9 @@ class LocalizerError(ValueError):
 class SemanticLocalizer:
     """Pose of a spherical stereo camera on a semantic map.
 
-    detector: a `Detector`, needed by `localize` only. association: "greedy" (the paper's), or a function that is called
-    as `associate_greedy` is. distance: "box_centre", the paper's way, or "disparity", from the matched features.
+    detector: a `Detector`, which `localize` asks unless it is given boxes. association: "greedy" (the paper's), or a
+    function that is called as `associate_greedy` is. distance: "box_centre", the paper's way, or "disparity", from the
+    matched features.
     weights and distance_term: of eq. (1). weighted_fit: True weighs each pair by the covariance of its observation, and
     the paper counts all alike. noise: how exact detections are, for covariances and `max_range`. image_size: (width,
     height) of panoramas whose images are not given.
@@ -78,22 +80,23 @@ class SemanticLocalizer:
         self.weighted_fit, self.reject_implausible = weighted_fit, bool(reject_implausible)
         self.image_size = View(*image_size).size
 
-    def localize(self, upper_image: np.ndarray, lower_image: np.ndarray) -> Localization:
-        """Return the pose from two panoramas: uint8 BGR `(H, W, 3)`, W = 2 H, one size.
+    def localize(
+        self, upper_image: np.ndarray | View, lower_image: np.ndarray | View, boxes: StereoBoxes | None = None
+    ) -> Localization:
+        """Return the pose from two panoramas: uint8 BGR `(H, W, 3)`, W = 2 H, one size, or views of them.
 
-        Raises `PanoramaError` for images that are no panoramas (`open_pair`), `SwappedImagesError` for upper and lower
-        exchanged, `LocalizerError` without a detector. Source: paper 2, figure 2.
+        boxes: the objects in them, drawn by hand (`read_stereo_boxes`); None: the detector finds them. Raises
+        `PanoramaError` for images that are no panoramas (`open_pair`), `SwappedImagesError` for upper and lower
+        exchanged, `DetectionError` for boxes of other images, `LocalizerError` without boxes and a detector.
+        Source: paper 2, figure 2.
         """
+        if boxes is not None:
+            upper, lower = boxes.on(upper_image, lower_image)
+            return self._walk(Localization(upper=upper, lower=lower), self._match)
         if self.detector is None:
-            raise LocalizerError("this localizer has no detector; give one, or call localize_detections")
+            raise LocalizerError("this localizer has no detector; give it one, or give boxes")
         upper, lower = open_pair(upper_image, lower_image)
-        steps = self._detect, self._match, self._range, self._associate, self._fit
-        return _walk(Localization(upper=upper, lower=lower), steps)
-
-    def localize_views(self, upper: View, lower: View) -> Localization:
-        """Return the pose from two panoramas with their detections: section 2.3 and on."""
-        found = Localization(upper=coloured(upper), lower=coloured(lower))
-        return _walk(found, (self._match, self._range, self._associate, self._fit))
+        return self._walk(Localization(upper=upper, lower=lower), self._detect)
 
     def localize_detections(
         self,
@@ -112,7 +115,7 @@ class SemanticLocalizer:
         upper, lower = (coloured(View(*size, detections=side)) for side in (upper_detections, lower_detections))
         boxes_on(upper, "upper"), boxes_on(lower, "lower")
         found = Localization(upper=upper, lower=lower, matches=tuple(matches))
-        return _walk(found, (self._range, self._associate, self._fit))
+        return self._walk(found, self._range)
 
     def localize_observations(self, observations: Sequence[Observation]) -> Localization:
         """Return the pose from objects whose positions in the body frame are known: sections 2.5 and 2.6."""
@@ -120,7 +123,17 @@ class SemanticLocalizer:
         for i, one in enumerate(observations):
             if canonical_label(one.label) not in self.semantic_map.labels:
                 raise LocalizerError(f"observation {i} is a {one.label}, and the map has none: leave it out")
-        return _walk(Localization(observations=observations), (self._associate, self._fit))
+        return self._walk(Localization(observations=observations), self._associate)
+
+    def _walk(self, found: Localization, first: Callable[[Localization], Localization]) -> Localization:
+        """Take the record through the steps of figure 2, from the first on that it needs."""
+        steps = [self._detect, self._match, self._range, self._associate, self._fit]
+        for step in steps[steps.index(first) :]:
+            found = step(found)
+        if found.upper is None:
+            return found
+        upper, lower = (replace(view, image=None, features=None) for view in (found.upper, found.lower))
+        return replace(found, upper=upper, lower=lower)
 
     def _detect(self, found: Localization) -> Localization:
         """2.2: detect the objects of each panorama."""
@@ -211,16 +224,6 @@ class SemanticLocalizer:
             )
         covariance = rigid_fit.fit_covariance(pose, source, target, covariances=covariances, noise=noise)
         return replace(found, pose=pose, status=Status.OK, covariance=covariance)
-
-
-def _walk(found: Localization, steps: Sequence[Callable[[Localization], Localization]]) -> Localization:
-    """Take the record through the steps, in their order."""
-    for step in steps:
-        found = step(found)
-    if found.upper is None:
-        return found
-    upper, lower = (replace(view, image=None, features=None) for view in (found.upper, found.lower))
-    return replace(found, upper=upper, lower=lower)
 
 
 def _too_few(found: Localization) -> tuple[str, str] | None:

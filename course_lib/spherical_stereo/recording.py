@@ -11,6 +11,7 @@ Boxes are in edge coordinates of images of that size. u_max passes the width if 
 tables call the object, and may be left out.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -20,7 +21,7 @@ import numpy as np
 from course_lib.files import is_file, read_json
 from course_lib.spherical_stereo.detection import detected_object
 from course_lib.spherical_stereo.detection.colour import Box, coloured
-from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError
+from course_lib.spherical_stereo.detection.detected_object import DetectionError
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, View, open_pair, read_panorama
 
 VERSION = 1
@@ -52,11 +53,11 @@ class StereoPair:
 
     def images(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the upper and the lower panorama, `(H, W, 3)` uint8 BGR."""
-        images = read_panorama(self.upper_file), read_panorama(self.lower_file)
-        for file, image in zip((self.upper_file, self.lower_file), images, strict=True):
-            if image.shape[1::-1] != self.size:
-                raise PanoramaError(f"{file} has (width, height) {image.shape[1::-1]}; {POSES_FILE} says {self.size}")
-        return images
+        views = read_panorama(self.upper_file), read_panorama(self.lower_file)
+        for file, view in zip((self.upper_file, self.lower_file), views, strict=True):
+            if view.size != self.size:
+                raise PanoramaError(f"{file} has (width, height) {view.size}; {POSES_FILE} says {self.size}")
+        return views[0].image, views[1].image
 
 
 @dataclass(frozen=True)
@@ -137,22 +138,21 @@ class LabelledBox(NamedTuple):
 
 @dataclass(frozen=True)
 class StereoBoxes:
-    """The boxes of both images, and the size (width, height) in pixels of the images that they were drawn on."""
+    """The boxes of both images: anything with `label` and `box`."""
 
-    size: tuple[int, int]
-    upper: list[LabelledBox]
-    lower: list[LabelledBox]
+    size: tuple[int, int]  # (width, height) in pixels of the images that they were drawn on
+    upper: Sequence[LabelledBox]
+    lower: Sequence[LabelledBox]
 
     def on(self, upper_image: np.ndarray | View, lower_image: np.ndarray | View) -> tuple[View, View]:
         """Return both panoramas with the boxes as detections of score 1. Hue and saturation come from the images."""
-        views = open_pair(upper_image, lower_image)
-        if views[0].size != self.size:
+        upper, lower = open_pair(upper_image, lower_image)
+        if upper.size != self.size:
             raise DetectionError(
-                f"the boxes were drawn on images of {self.size} pixels, these have {views[0].size}: scale the images, "
-                "or draw the boxes again"
+                f"the boxes were drawn on images of {self.size} pixels, these have {upper.size}: scale the images, or "
+                "draw the boxes again"
             )
-        upper, lower = ([Detection(one.label, 1.0, one.box) for one in side] for side in (self.upper, self.lower))
-        return coloured(views[0].replace(detections=upper)), coloured(views[1].replace(detections=lower))
+        return coloured(upper.replace(detections=self.upper)), coloured(lower.replace(detections=self.lower))
 
 
 def read_stereo_boxes(path: str | Path) -> StereoBoxes:

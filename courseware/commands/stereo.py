@@ -57,9 +57,8 @@ def run(arguments: argparse.Namespace) -> int:
     check_options(arguments)
     rig = StereoRig(arguments.baseline)
     boxes = read_stereo_boxes(arguments.boxes) if arguments.boxes else None
-    upper, lower = open_pair(read_panorama(arguments.upper), read_panorama(arguments.lower))
-    if boxes:
-        upper, lower = boxes.on(upper, lower)
+    views = read_panorama(arguments.upper), read_panorama(arguments.lower)
+    upper, lower = boxes.on(*views) if boxes else open_pair(*views)
     started = time.perf_counter()
     upper, lower = find_features(upper), find_features(lower)
     features = match_features(upper.features, lower.features)

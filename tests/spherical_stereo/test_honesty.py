@@ -14,14 +14,22 @@ from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, open_
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
-from tests.spherical_stereo.stereo_scene import BASELINE, TRUE_POSE, WIDTH, KnowingDetector, mapped_scene, seen_turned
+from tests.spherical_stereo.stereo_scene import (
+    BASELINE,
+    TRUE_POSE,
+    WIDTH,
+    KnowingDetector,
+    boxes_of,
+    mapped_scene,
+    seen_turned,
+)
 
 UPPER, LOWER, MAP = mapped_scene()
 RIG = StereoRig(BASELINE)
 
 
 def locate(upper=UPPER, lower=LOWER, semantic_map=MAP, rig=RIG, **options):
-    return SemanticLocalizer(rig, semantic_map, **options).localize_views(upper, lower)
+    return SemanticLocalizer(rig, semantic_map, **options).localize(upper, lower, boxes_of(upper, lower))
 
 
 def seen_by(image, detections=LOWER.detections):

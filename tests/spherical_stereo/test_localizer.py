@@ -18,6 +18,7 @@ from course_lib.spherical_stereo.matching.object_matching import ObjectMatch
 from course_lib.spherical_stereo.outcomes import Reason
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, direction_to_pixel
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, rotation_2d
+from course_lib.spherical_stereo.recording import StereoBoxes
 from course_lib.spherical_stereo.semantic_map.association import AssociationError, Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 from tests.spherical_stereo.stereo_scene import BASELINE, ROOM, KnowingDetector, mapped_scene, pair_from
@@ -197,6 +198,17 @@ def bare(one):
 def detected(found):
     """What becomes of two images in which a detector finds this."""
     return SemanticLocalizer(RIG, ROOM, SimpleNamespace(detect=lambda image: found)).localize(IMAGE, IMAGE)
+
+
+def test_boxes_drawn_by_hand_take_the_place_of_a_detector():
+    *images, upper, lower = pair_from(0.0, 0.0)
+    semantic_map, size = mapped_scene()[2], images[0].shape[1::-1]
+    by_detector = SemanticLocalizer(StereoRig(BASELINE), semantic_map, KnowingDetector((*images, upper, lower)))
+    by_hand = SemanticLocalizer(StereoRig(BASELINE), semantic_map)
+    found = by_hand.localize(*images, StereoBoxes(size, upper, lower))
+    assert found.pose == by_detector.localize(*images).pose
+    with pytest.raises(DetectionError, match="the boxes were drawn on images of"):
+        by_hand.localize(*images, StereoBoxes((64, 32), upper, lower))
 
 
 def test_a_detector_of_ones_own_need_not_know_colours_which_are_measured_in_the_images():

@@ -78,7 +78,6 @@ def match_views(
     min_features: how many matched features make one object. check_alignment: match nothing if the cameras are turned or
     the images of different moments. The paper asks neither. Source: paper 2, section 2.3.
     """
-    open_pair(upper, lower)
     boxes = boxes_on(upper, "upper"), boxes_on(lower, "lower")
     labels = [[canonical_label(d.label) for d in view.detections] for view in (upper, lower)]
     counts = np.zeros((len(boxes[0]), len(boxes[1])), dtype=int)

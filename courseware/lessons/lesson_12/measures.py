@@ -38,7 +38,7 @@ def training_picture() -> TrainingPicture:
     things = [thing for thing in map(recording.true_object, entry["objects"]) if thing.visible_fraction >= 0.5]
     things.sort(key=lambda thing: -np.prod(np.subtract(thing.visible_box[2:], thing.visible_box[:2])))
     boxes = np.array([thing.visible_box for thing in things])
-    return TrainingPicture(read_panorama(folder / entry["file"]), [thing.label for thing in things], boxes)
+    return TrainingPicture(read_panorama(folder / entry["file"]).image, [thing.label for thing in things], boxes)
 
 
 def anchors() -> tuple[np.ndarray, np.ndarray]:
