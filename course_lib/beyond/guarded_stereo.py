@@ -7,7 +7,7 @@ import numpy as np
 from course_lib.beyond.guarded_frames import FrameOrder
 from course_lib.depth_mcl.one_at_a_time import one_at_a_time
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
-from course_lib.spherical_stereo.matching.features import SwappedImagesError
+from course_lib.spherical_stereo.matching.alignment import SwappedImagesError
 from course_lib.spherical_stereo.outcomes import Reason
 from course_lib.spherical_stereo.pose.localization import Localization
 

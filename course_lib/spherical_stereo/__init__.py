@@ -19,7 +19,7 @@ from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.detection.detector import Detector, YoloDetector
 from course_lib.spherical_stereo.detection.seam import extend_seam
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
-from course_lib.spherical_stereo.matching.features import SwappedImagesError
+from course_lib.spherical_stereo.matching.alignment import SwappedImagesError
 from course_lib.spherical_stereo.matching.object_matching import ObjectMatch, match_objects
 from course_lib.spherical_stereo.panorama import StereoRig, direction_to_pixel, open_view, pixel_to_direction
 from course_lib.spherical_stereo.pose.localization import Localization

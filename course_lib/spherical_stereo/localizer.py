@@ -11,7 +11,7 @@ import numpy as np
 from course_lib.spherical_stereo.detection.colour import coloured
 from course_lib.spherical_stereo.detection.detected_object import boxes_on, canonical_label
 from course_lib.spherical_stereo.detection.detector import Detector, find_objects
-from course_lib.spherical_stereo.matching.features import MAX_TURN
+from course_lib.spherical_stereo.matching.alignment import MAX_TURN
 from course_lib.spherical_stereo.matching.object_matching import MIN_FEATURES, match_views, matched_indices
 from course_lib.spherical_stereo.outcomes import ObjectOutcome, Reason, Status
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair

@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.spherical_stereo.detection.detected_object import DetectionError, boxes_on, canonical_label
-from course_lib.spherical_stereo.matching import features
+from course_lib.spherical_stereo.matching.alignment import Alignment, camera_alignment, check_not_swapped
 from course_lib.spherical_stereo.matching.epipolar import EpipolarPairs, allowed_by_rig, best_pairs, epipolar_pairs
-from course_lib.spherical_stereo.matching.features import Alignment, check_not_swapped, find_features
+from course_lib.spherical_stereo.matching.features import find_features, inside_box
 from course_lib.spherical_stereo.outcomes import NoPartner
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
 
@@ -86,13 +86,13 @@ def match_views(
     if counts.size:  # finding features takes a quarter of a second, and without two objects nobody uses them
         upper, lower = find_features(upper), find_features(lower)
         if check_alignment:
-            alignment = features.camera_alignment(upper.features, lower.features)
+            alignment = camera_alignment(upper.features, lower.features)
             if not (alignment.of_one_moment and alignment.is_upright):
                 return StereoMatching([], [], alignment)
         pairs = epipolar_pairs(upper.features, lower.features)
         check_not_swapped(best_pairs(pairs).disparity)
         in_upper, in_lower = (
-            [features.inside_box(view.features.keypoints, box, view.width)[index] for box in of_view]
+            [inside_box(view.features.keypoints, box, view.width)[index] for box in of_view]
             for view, of_view, index in ((upper, boxes[0], pairs.upper), (lower, boxes[1], pairs.lower))
         )
         for i, j in np.ndindex(counts.shape):

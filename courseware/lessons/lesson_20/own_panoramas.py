@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.files import is_given
-from course_lib.spherical_stereo.matching.features import FeatureMatches
+from course_lib.spherical_stereo.matching.alignment import FeatureMatches
 from course_lib.spherical_stereo.panorama import StereoRig, View, azimuth_elevation_of_pixel, open_pair, read_panorama
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.ranging.object_positions import MeasuredObject, measure_objects
