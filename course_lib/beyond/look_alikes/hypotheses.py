@@ -19,6 +19,8 @@ DISTANCE_GATE = 3.5  # standard deviations by which two distances may differ and
 MIN_DISTANCE = 0.5  # Metres between two landmarks, and between two observations. Nearer ones tell no useful heading.
 UNKNOWN_SIGMA = 0.3  # Metres, standard deviation of a position without a covariance (chosen).
 MAP_SIGMA = 0.02  # metres, standard deviation of a landmark's coordinates
+# Steps for every pose of two matches: thousands at once, of which the best are refitted. On P2's practice rooms nine of
+# ten poses near the true one are then within 0.1 mm and 1e-4 radians of where forty steps end.
 GAUSS_NEWTON_STEPS = 4
 
 

@@ -16,7 +16,7 @@ from course_lib.spherical_stereo.outcomes import Reason
 MIN_SPREAD = 1e-3  # Metres, root mean square about the centroid. Points nearer together give no heading.
 MIN_WIDTH = 0.2  # width over length: a narrower point set counts as a line, on which a mirror image does not show
 MIRROR_ADVANTAGE = 3.0  # mirrored: the fit with a reflection leaves a residual smaller by this factor
-GAUSS_NEWTON_STEPS = 10
+GAUSS_NEWTON_STEPS = 10  # At most. On P2's practice rooms every fit is then within 0.01 mm of where a hundred end.
 DOUBT = 0.001  # Share of the right poses that may be called implausible, if the covariances are exact.
 NOISE_FACTOR = 1.5
 """How much larger than their covariances say the errors may be (chosen beforehand, and looked at on generated rooms,
