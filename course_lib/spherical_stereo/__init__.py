@@ -9,7 +9,8 @@ spherical stereo camera". An image pair walks through figure 2 in this order; a 
     pose/          2.6: the least-squares fit, whether its residuals contradict it, and the answer
     localizer      the steps themselves
 
-recording reads files beside panoramas: the truth, and boxes drawn by hand. Images are BGR uint8 arrays, as OpenCV reads
+outcomes holds every word with which a step says that it found nothing. recording reads the files that come with
+panoramas: the truth, and boxes drawn by hand. Images are BGR uint8 arrays, as OpenCV reads
 them. Boxes and points on them are in edge coordinates (`panorama`).
 """
 

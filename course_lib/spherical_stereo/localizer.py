@@ -32,7 +32,7 @@ IMAGE_SIZE = (1280, 640)  # Width and height in pixels of the panoramas under da
 
 
 class LocalizerError(ValueError):
-    """A localizer set up, or called, with parts that do not go together; the message says what to do."""
+    """Parts or arguments of a localizer that do not go together; the message says what to do."""
 
 
 class SemanticLocalizer:
@@ -41,13 +41,13 @@ class SemanticLocalizer:
     detector: a `Detector`, which `localize` asks unless it is given boxes. association: "greedy" (the paper's), or a
     function that is called as `associate_greedy` is. distance: "box_centre", the paper's way, or "disparity", from the
     matched features.
-    weights and distance_term: of eq. (1). weighted_fit: True weighs each pair by the covariance of its observation, and
-    the paper counts all alike. noise: how exact detections are, for covariances and `max_range`. image_size: (width,
+    weights and distance_term: of eq. (1). weighted_fit: True weighs each pair by the covariance of its observation; the
+    paper counts all pairs alike. noise: how exact detections are, for covariances and `max_range`. image_size: (width,
     height) of panoramas whose images are not given.
-    reject_implausible: False is the paper's method; True also asks that the cameras are aligned and their images of one
-    moment, that an object has three matched features and is nearer than `max_range`, and that the residuals can be
-    those of a right pose. Raises `LocalizerError` for a name that does not exist, `PanoramaError` for a size that no
-    panorama has. Source: paper 2, figure 2.
+    reject_implausible: False is the paper's method. True also requires that the cameras are aligned, that the two
+    images show one moment, that an object has three matched features and is nearer than `max_range`, and that the
+    residuals are no larger than those of a right pose can be. Raises `LocalizerError` for a name that does not exist,
+    `PanoramaError` for a size that no panorama has. Source: paper 2, figure 2.
     """
 
     def __init__(
@@ -65,8 +65,8 @@ class SemanticLocalizer:
         noise: Noise = Noise(),  # noqa: B008 (it cannot change)
     ):
         if detector is not None and (isinstance(detector, type) or not isinstance(detector, Detector)):
-            told = "an object with detect(image_bgr) -> list of Detection, such as YoloDetector.load(folder)"
-            raise LocalizerError(f"detector must be {told}; got {detector!r}")
+            expected = "an object with detect(image_bgr) -> list of Detection, such as YoloDetector.load(folder)"
+            raise LocalizerError(f"detector must be {expected}; got {detector!r}")
         if association != "greedy" and not callable(association):
             raise LocalizerError(f'association must be "greedy" or called as associate_greedy is; got {association!r}')
         if distance not in DISTANCES:
@@ -136,12 +136,12 @@ class SemanticLocalizer:
         return replace(found, upper=upper, lower=lower)
 
     def _detect(self, found: Localization) -> Localization:
-        """2.2: detect the objects of each panorama."""
+        """Detect the objects of each panorama (2.2)."""
         upper, lower = (find_objects(view, self.detector) for view in (found.upper, found.lower))
         return replace(found, upper=upper, lower=lower)
 
     def _match(self, found: Localization) -> Localization:
-        """2.3: find out which object of the upper image is which of the lower one."""
+        """Find out which object of the upper image is which of the lower one (2.3)."""
         blank = [name for name, view in (("upper", found.upper), ("lower", found.lower)) if view.is_blank]
         if blank:
             return found.unable(Reason.BLANK, f"the {' and the '.join(blank)} image is black: is a lens covered?")
@@ -165,7 +165,7 @@ class SemanticLocalizer:
         return replace(found, matches=tuple(matching.matches), unmatched=tuple(matching.unmatched), turn=turn)
 
     def _range(self, found: Localization) -> Localization:
-        """2.4: place the matched objects. Those with a position and a class of the map are the observations."""
+        """Place the matched objects (2.4). Those with a position and a class of the map are the observations."""
         pairs = matched_indices(found.matches, found.upper, found.lower)
         furthest = max_range(self.rig.baseline, self.noise.box_centre) if self.reject_implausible else np.inf
         views = found.upper, found.lower
@@ -186,14 +186,14 @@ class SemanticLocalizer:
         return found if cause is None else found.unable(*cause)
 
     def _associate(self, found: Localization) -> Localization:
-        """2.5: pair the observations with landmarks."""
+        """Pair the observations with landmarks (2.5)."""
         if not found.observations:
             return found.unable(Reason.TOO_FEW_PAIRS, "there is no observation to match to the map")
         how = {"weights": self.weights, "distance_term": self.distance_term}
         return replace(found, association=self.association(found.observations, self.semantic_map, **how))
 
     def _fit(self, found: Localization) -> Localization:
-        """2.6: fit the pose to the pairs of like classes. A matcher that weighed whole poses has one already."""
+        """Fit the pose to the pairs of like classes (2.6). A matcher that weighed whole poses has one already."""
         if found.reason is not None:
             return found
         used = [found.observations[i] for i, _ in found.used_pairs]

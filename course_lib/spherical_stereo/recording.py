@@ -1,4 +1,4 @@
-"""Files beside stereo panoramas: the truth of a folder of pairs, and boxes drawn by hand on one pair.
+"""Files that come with stereo panoramas: the truth of a folder of pairs, and boxes drawn by hand on one pair.
 
 poses.json (version 1): seed, width, height, baseline, and for every pair its rig (where it really stood) and, for the
 upper and the lower image, the file and the exact boxes of the objects that can be seen. Boxes drawn by hand:

@@ -1,7 +1,7 @@
 """What paper 2's method sees in generated rooms: a room a seed, poses at both heights, and views a few steps on.
 
 Sections 2.2 to 2.4 take long: they are done once for each room and kept as a record. Map matching and fit (2.5, 2.6)
-are done anew from the records, by every variant.
+are done from the records, by every variant.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -103,7 +103,7 @@ def photographed_pairs(
 
 
 def observe_views(seed: int, poses: int, network: Sequence, views: int) -> list[dict]:
-    """Make the room of a seed anew, walk on from each of its first poses, and note what is seen there; for JSON.
+    """Make the room of a seed again, walk on from each of its first poses, and note what is seen there; for JSON.
 
     views: of a sequence, the first one counted, which is a pose of `observe_room` as it stands there.
     """

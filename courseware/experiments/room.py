@@ -39,7 +39,7 @@ SAME_DIRECTION = np.deg2rad(3.0)  # azimuth within which two observations are of
 
 
 class PairResult(NamedTuple):
-    """What the method made of one pair of panoramas, and what it should have made of it."""
+    """The method's result for one pair of panoramas, and the right one."""
 
     pair: StereoPair
     localization: Localization
@@ -107,7 +107,7 @@ def run(
 
 
 def _summarize(experiments: dict, summaries: dict, semantic_map: SemanticMap, baseline: float) -> dict:
-    """Tables 3 to 5 by experiment and association method, stereo matching and distances over all poses."""
+    """Return tables 3 to 5 by experiment and association method, and stereo matching and distances over all poses."""
     from_images, from_boxes = ([one for by in experiments.values() for one in by[source]] for source in SOURCES)
     ranges = {
         "exact_boxes": range_errors(from_boxes, semantic_map, baseline, "box_centre"),
@@ -131,7 +131,7 @@ def _summarize(experiments: dict, summaries: dict, semantic_map: SemanticMap, ba
 
 
 def _rows(experiments: dict[str, dict[str, list[PairResult]]]) -> list[dict]:
-    """A row a pose for a CSV file."""
+    """Return a row for each pose, for a CSV file."""
     return [
         {"experiment": experiment, "source": source, "place": one.pair.name}
         | pose_columns(one.pair.pose, one.localization, one.outcome)
@@ -143,7 +143,7 @@ def _rows(experiments: dict[str, dict[str, list[PairResult]]]) -> list[dict]:
 
 
 def pose_columns(true_pose: Sequence[float], found: Localization, judged: PoseOutcome) -> dict:
-    """Columns of a CSV file: the true pose, the estimated one, and what became of it."""
+    """Return columns of a CSV file: the true pose, the estimated one, and its outcome."""
     x, y, theta = map(float, true_pose)
     pose = ("", "", "") if found.pose is None else (round(float(value), 4) for value in found.pose[:3])
     return {
@@ -197,14 +197,14 @@ def experiment_summary(results: Sequence[PairResult]) -> dict:
 
 
 def fitted_by_covariance(found: Localization, localizer: SemanticLocalizer) -> Localization:
-    """Return a localization fitted anew (2.6): each observation weighted by its covariance, not counted alike."""
+    """Return a localization fitted again (2.6), with each observation weighted by its covariance."""
     weighted = copy(localizer)
     weighted.weighted_fit = True
     return weighted.localize_observations(found.observations) if found.observations else found
 
 
 def weighted_summary(results: Sequence[PairResult], localizer: SemanticLocalizer) -> dict:
-    """`experiment_summary` of the same observations and associations, `fitted_by_covariance`."""
+    """Return the `experiment_summary` of the same observations and associations, `fitted_by_covariance`."""
     fitted = [fitted_by_covariance(one.localization, localizer) for one in results]
     return summary([outcome(a, one.pair.pose, one.true_landmarks) for a, one in zip(fitted, results, strict=True)])
 
@@ -259,7 +259,7 @@ def range_errors(
 
 
 class RolledPair(NamedTuple):
-    """What the method made of one pair as it was, and of the same images, `width` pixels wide, rolled by `columns` k.
+    """The localizations of one pair as it was, and of the same images, `width` pixels wide, rolled by `columns` k.
 
     That is the view of a rig turned by 2 pi k / W to the left. The pose moves all the same: a detector shifted by less
     than its stride draws boxes a pixel or two elsewhere, half a metre for an object at 6 m (2.4).
@@ -292,7 +292,7 @@ def weigh_by_covariance(pairs: Sequence[RolledPair], localizer: SemanticLocalize
 def compare(pair: RolledPair) -> tuple[bool, float, float]:
     """Return how far rolling the images moved the pose: (agree, metres, radians), NaN without both poses.
 
-    agree: the same objects, told by their directions, were taken for the same landmarks.
+    agree: the same objects, recognized by their directions, were taken for the same landmarks.
     """
     columns, width, straight, rolled = pair
     angle = 2 * np.pi * columns / width

@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
-from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis, rotations
+from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis
 from course_lib.beyond.several_views import CarriedPose, Motion, SemanticTracker, carried_on, fused
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.outcomes import Reason
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, rotation_2d
 from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, SYMMETRIC, observed
 
 SURE = np.diag([0.02, 0.02, 0.02]) ** 2
 
 
 def motion(start, end, covariance=SURE):
-    forward, left = rotations(np.array(start[2])).T @ (end[:2] - start[:2])
+    forward, left = rotation_2d(start[2]).T @ (end[:2] - start[:2])
     return Motion(forward, left, wrap_angle(end[2] - start[2]), covariance)
 
 

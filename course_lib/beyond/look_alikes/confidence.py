@@ -8,12 +8,12 @@ from scipy.stats import chi2
 from course_lib.beyond.look_alikes.evidence import CLUTTER_DENSITY, FAR_RANGE, Evidence
 from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis
 from course_lib.spherical_stereo.outcomes import Reason
+from course_lib.spherical_stereo.pose.rigid_fit import DOUBT
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 # Share of the evidence that is believed, because errors such as a wrong baseline are in all observations at once.
 TEMPER = 0.5
 MIN_INLIERS = 3  # Matched observations that a pose needs, because two always fit.
-DOUBT = 0.001  # Share of the right poses whose residuals may be called too large, if the covariances are exact.
 MIN_CONFIDENCE = 0.8  # A pose with a smaller confidence is not given out.
 MARGIN = 1.0  # Metres that a room reaches beyond its landmarks, if the map has no walls (chosen).
 

@@ -79,11 +79,11 @@ def _mutual_matches(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, 
 
 def check_not_swapped(disparity: np.ndarray) -> None:
     """Raise `SwappedImagesError` if negative disparities `(n,)` lead by 3 sqrt(n), three sigmas of a coin."""
-    told = disparity[np.abs(disparity) > MIN_DISPARITY]
-    negative = int((told < 0).sum())
-    if 2 * negative - len(told) > 3 * np.sqrt(len(told)):
+    clear = disparity[np.abs(disparity) > MIN_DISPARITY]
+    negative = int((clear < 0).sum())
+    if 2 * negative - len(clear) > 3 * np.sqrt(len(clear)):
         raise SwappedImagesError(
-            f"upper and lower image seem to be swapped: {negative} of {len(told)} matched features lie lower in the "
+            f"upper and lower image seem to be swapped: {negative} of {len(clear)} matched features lie lower in the "
             "image given as the lower one, but a camera further down sees them higher. Swap the two images"
         )
 

@@ -60,7 +60,7 @@ def match_objects(
     lower_detections: Sequence,
     rig: StereoRig,
 ) -> list[ObjectMatch]:
-    """Return the objects seen in both images. `match_views` says also what is left over, and why.
+    """Return the objects seen in both images. `match_views` also returns the detections left over, and why.
 
     Images: uint8 BGR `(H, W, 3)`, W = 2 H, one size. Detections: anything with `label` and `box` (edge coordinates).
     Raises `PanoramaError` as `open_pair` does, and what `match_views` raises. Source: paper 2, section 2.3.

@@ -107,8 +107,8 @@ def _closed_form(source: np.ndarray, target: np.ndarray, w: np.ndarray) -> Pose2
                 Reason.MIRRORED,
             )
     if d[0] + sign * d[1] < 1e-9 * np.sqrt(spread_a * spread_b):
-        told = f"every heading fits these {len(w)} pairs equally badly: are they wrong?"
-        raise RigidFitError(told, Reason.UNDETERMINED)
+        message = f"every heading fits these {len(w)} pairs equally badly: are they wrong?"
+        raise RigidFitError(message, Reason.UNDETERMINED)
     rotation = u @ np.diag([1.0, sign]) @ vt
     x, y = target_mean - rotation @ source_mean
     return Pose2D(float(x), float(y), wrap_angle(np.arctan2(rotation[1, 0], rotation[0, 0])))
