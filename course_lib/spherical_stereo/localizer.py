@@ -190,7 +190,9 @@ class SemanticLocalizer:
         if not found.observations:
             return found.unable(Reason.TOO_FEW_PAIRS, "there is no observation to match to the map")
         how = {"weights": self.weights, "distance_term": self.distance_term}
-        return replace(found, association=self.association(found.observations, self.semantic_map, **how))
+        association = self.association(found.observations, self.semantic_map, **how)
+        found = replace(found, association=association)
+        return found if association.reason is None else found.unable(association.reason, association.explanation)
 
     def _fit(self, found: Localization) -> Localization:
         """Fit the pose to the pairs of like classes (2.6). A matcher that weighed whole poses has one already."""
@@ -200,10 +202,8 @@ class SemanticLocalizer:
         source = np.array([[one.x, one.y] for one in used]).reshape(-1, 2)
         target = self.semantic_map.positions[[j for _, j in found.used_pairs]].reshape(-1, 2)
         noise = None if any(one.covariance is None for one in used) else np.array([one.covariance for one in used])
-        weighed = found.association.confidence is not None
+        weighed = found.confidence is not None
         covariances = noise if self.weighted_fit or weighed else None
-        if weighed and found.association.reason is not None:
-            return found.unable(found.association.reason, found.association.explanation)
         try:
             pose = found.alternatives[0].pose if weighed else fit_rigid_2d(source, target, covariances=covariances)
         except rigid_fit.RigidFitError as error:
