@@ -11,6 +11,7 @@ import numpy as np
 from course_lib.spherical_stereo.detection.colour import coloured
 from course_lib.spherical_stereo.detection.detected_object import boxes_on, canonical_label
 from course_lib.spherical_stereo.detection.detector import Detector, find_objects
+from course_lib.spherical_stereo.drawn_boxes import StereoBoxes
 from course_lib.spherical_stereo.matching.alignment import MAX_TURN
 from course_lib.spherical_stereo.matching.object_matching import MIN_FEATURES, match_views, matched_indices
 from course_lib.spherical_stereo.outcomes import ObjectOutcome, Reason, Status
@@ -19,7 +20,6 @@ from course_lib.spherical_stereo.pose import rigid_fit
 from course_lib.spherical_stereo.pose.localization import Localization, PlacedObject
 from course_lib.spherical_stereo.pose.rigid_fit import fit_rigid_2d
 from course_lib.spherical_stereo.ranging.object_positions import DISTANCES, Distance, Noise, max_range, position_objects
-from course_lib.spherical_stereo.recording import StereoBoxes
 from course_lib.spherical_stereo.semantic_map.association import (
     Association,
     Observation,

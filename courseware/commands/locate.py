@@ -30,9 +30,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Localize and print. Return 0 also if there is no pose, because that is an answer."""
     from course_lib.beyond.look_alikes.matchers import matcher
+    from course_lib.spherical_stereo.drawn_boxes import read_stereo_boxes
     from course_lib.spherical_stereo.localizer import SemanticLocalizer
     from course_lib.spherical_stereo.panorama import StereoRig, read_panorama
-    from course_lib.spherical_stereo.recording import read_stereo_boxes
     from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
     by_detector = [arguments.detector, arguments.input_size, arguments.score_threshold]

@@ -16,7 +16,6 @@ from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.pose.localization import Localization
-from course_lib.spherical_stereo.recording import StereoPair, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 from courseware.experiments.room import SOURCES, localize_pair
@@ -25,6 +24,7 @@ from courseware.simulation.room import look_alike_recording
 from courseware.simulation.room.look_alike_recording import RecordingModels, WalkModel, experiment_of, surveyed_room
 from courseware.simulation.room.measurement_places import CAMERA_HEIGHTS
 from courseware.simulation.room.scene import Room
+from courseware.simulation.room.stereo_recording import StereoPair, read_stereo_recording
 
 MODELS = RecordingModels()  # those of the reported tables
 

@@ -22,7 +22,6 @@ from course_lib.spherical_stereo.panorama import pixel_to_direction
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.ranging.object_positions import disparity_distance
 from course_lib.spherical_stereo.ranging.triangulation import object_position, triangulation_outcome
-from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, TrueObject, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 from courseware.experiments import bearing_only as directions
 from courseware.experiments import room_evaluation
@@ -31,6 +30,7 @@ from courseware.experiments.room_tables import tables
 from courseware.experiments.runner import Outcome, Runner
 from courseware.paths import data_path
 from courseware.simulation.room.data import make_room_data
+from courseware.simulation.room.stereo_recording import StereoPair, StereoRecording, TrueObject, read_stereo_recording
 
 SHIPPED_SEED = 4  # of data/room
 SOURCES = ("images", "exact_boxes")

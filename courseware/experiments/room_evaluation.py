@@ -10,7 +10,7 @@ from course_lib.spherical_stereo.detection.detected_object import Detection, box
 from course_lib.spherical_stereo.outcomes import Status
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from course_lib.spherical_stereo.recording import TrueObject
+from courseware.simulation.room.stereo_recording import TrueObject
 
 KINDS = CORRECT, INCORRECT, UNABLE = "correct", "incorrect", "unable"
 MAX_ERROR = 2.0  # m in x and in y; by table 2 exactly 2 m is correct and incorrect, here it is correct

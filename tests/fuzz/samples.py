@@ -13,9 +13,10 @@ from course_lib.depth_mcl import SceneMap, read_sequence
 from course_lib.depth_mcl.sequence import write_sequence
 from course_lib.geometry import optical_pose
 from course_lib.spherical_stereo import SemanticMap, YoloDetector
+from course_lib.spherical_stereo.drawn_boxes import read_stereo_boxes
 from course_lib.spherical_stereo.panorama import read_panorama
-from course_lib.spherical_stereo.recording import read_stereo_boxes, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark
+from courseware.simulation.room.stereo_recording import read_stereo_recording
 from tests.spherical_stereo.detection.blob_networks import GREEN, INPUT_SIZE, RED, blob_onnx, panorama, write_darknet
 
 PICTURE = panorama(np.random.default_rng(3), (100, 50, RED), (245, 20, GREEN))

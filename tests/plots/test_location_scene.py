@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from course_lib.spherical_stereo import SemanticLocalizer, StereoRig
+from course_lib.spherical_stereo.drawn_boxes import StereoBoxes
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
-from course_lib.spherical_stereo.recording import StereoBoxes
 from courseware.plots.location_scene import location_scene
 from courseware.plots.panorama_drawing import class_style
 from courseware.plots.scene_page import page_html

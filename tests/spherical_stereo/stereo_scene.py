@@ -14,9 +14,9 @@ import cv2
 import numpy as np
 
 from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.drawn_boxes import StereoBoxes
 from course_lib.spherical_stereo.panorama import View, direction_to_pixel, open_view, pixel_to_direction
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from course_lib.spherical_stereo.recording import StereoBoxes
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 
 WIDTH, HEIGHT = 512, 256

@@ -13,12 +13,12 @@ from hypothesis import strategies as st
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo import Noise, YoloDetector, mean_hue_saturation
 from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError, wrapped_box
+from course_lib.spherical_stereo.drawn_boxes import StereoBoxes
 from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
 from course_lib.spherical_stereo.matching.object_matching import ObjectMatch
 from course_lib.spherical_stereo.outcomes import Reason
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, direction_to_pixel
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, rotation_2d
-from course_lib.spherical_stereo.recording import StereoBoxes
 from course_lib.spherical_stereo.semantic_map.association import AssociationError, Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 from tests.spherical_stereo.stereo_scene import BASELINE, ROOM, KnowingDetector, mapped_scene, pair_from

@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.files import is_given
+from course_lib.spherical_stereo.drawn_boxes import read_stereo_boxes
 from course_lib.spherical_stereo.matching.alignment import FeatureMatches
 from course_lib.spherical_stereo.panorama import StereoRig, View, azimuth_elevation_of_pixel, open_pair, read_panorama
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.ranging.object_positions import MeasuredObject, measure_objects
-from course_lib.spherical_stereo.recording import read_stereo_boxes
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 from courseware.experiments.room import exact_detections
 from courseware.lessons.kit.room_photographs import room_map, room_recording
