@@ -9,8 +9,8 @@ import numpy as np
 
 from course_lib.spherical_stereo.detection.darknet import read_names
 from course_lib.spherical_stereo.detection.detector import YoloDetector
-from course_lib.spherical_stereo.recording import StereoRecording, TrueObject
 from courseware.experiments.room_evaluation import Matching, match_detections
+from courseware.simulation.room.stereo_recording import StereoRecording, TrueObject
 from tools.detector_training.images import LabelledPanorama
 
 MIN_SCORE = 0.05  # of a box that a validation looks at: far below any threshold that could be chosen

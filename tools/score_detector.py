@@ -30,9 +30,9 @@ def run(arguments: argparse.Namespace) -> int:
     from itertools import chain
 
     from course_lib.files import require_file
-    from course_lib.spherical_stereo.recording import read_stereo_recording
     from courseware.commands.output import progress_bar
     from courseware.paths import data_path
+    from courseware.simulation.room.stereo_recording import read_stereo_recording
     from tools.detector_evaluation import labelled_panoramas, score_detector
     from tools.training_images import labelled_images, make_room_images, read_image_list
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from course_lib.files import atomic_write, read_json
 from course_lib.spherical_stereo.panorama import read_panorama
-from course_lib.spherical_stereo.recording import TrueObject, true_object
 from courseware.simulation.room.furnishing import make_room
 from courseware.simulation.room.scene import free_places
 from courseware.simulation.room.stereo_photographs import box_entries
+from courseware.simulation.room.stereo_recording import TrueObject, true_object
 from courseware.simulation.sensors import panorama_rig
 from courseware.simulation.sensors.panorama_renderer import PanoramaRenderer
 from courseware.simulation.sensors.panorama_rig import NEARLY_PERFECT_RIG, PanoramaCameraModel
@@ -62,7 +62,8 @@ def read_image_list(folder: str | Path) -> list[dict]:
 def labelled_images(folder: str | Path) -> Iterator[tuple[np.ndarray, list[TrueObject]]]:
     """Every image `(H, W, 3)` BGR of a folder with everything that can be seen on it."""
     for image in read_image_list(folder):
-        yield read_panorama(Path(folder) / image["file"]), [true_object(entry) for entry in image["objects"]]
+        things = [true_object(entry) for entry in image["objects"]]
+        yield read_panorama(Path(folder) / image["file"]).image, things
 
 
 def _photograph_room(folder: Path, seed: int, count: int) -> list[dict]:

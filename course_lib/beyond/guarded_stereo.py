@@ -7,16 +7,17 @@ import numpy as np
 from course_lib.beyond.guarded_frames import FrameOrder
 from course_lib.depth_mcl.one_at_a_time import one_at_a_time
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
-from course_lib.spherical_stereo.matching.features import SwappedImagesError
-from course_lib.spherical_stereo.pose.localization import OK, SWAPPED, Localization
+from course_lib.spherical_stereo.matching.alignment import SwappedImagesError
+from course_lib.spherical_stereo.outcomes import Reason
+from course_lib.spherical_stereo.pose.localization import Localization
 
 NO_IMAGE = "no image"  # The outcome of a pair that was due and never came.
 
 
 class GuardedPair(NamedTuple):
-    """The outcome of a pair."""
+    """What became of one pair."""
 
-    outcome: str  # "ok"; "out of order" or "repeated"; or a reason why there is no pose (`pose.localization`)
+    outcome: str  # "ok"; "out of order" or "repeated"; or the `Reason` why there is no pose
     localization: Localization | None  # None if the pair was not used.
     missed: int  # Pairs that should have come before this one, and did not.
 
@@ -37,5 +38,5 @@ class GuardedRig:
         try:
             found = self.localizer.localize(upper_image, lower_image)
         except SwappedImagesError:
-            return GuardedPair(SWAPPED, None, frame.missed)
-        return GuardedPair(OK if found.status == OK else str(found.reason), found, frame.missed)
+            return GuardedPair(Reason.SWAPPED, None, frame.missed)
+        return GuardedPair(found.reason or found.status, found, frame.missed)

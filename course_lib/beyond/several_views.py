@@ -20,11 +20,11 @@ from course_lib.beyond.look_alikes.confidence import (
 )
 from course_lib.beyond.look_alikes.consistent import SHORT_LIST, distinct, explain, rank_poses
 from course_lib.beyond.look_alikes.evidence import Evidence
-from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis, rotations, scene_of
+from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis, scene_of
 from course_lib.depth_mcl.one_at_a_time import one_at_a_time
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.pose.localization import OK, UNABLE, Status
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.outcomes import Reason, Status
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
@@ -51,7 +51,7 @@ class CarriedPose(NamedTuple):
     mean: np.ndarray  # `(3,)` [x, y, theta]
     covariance: np.ndarray  # `(3, 3)`
     log_weight: float  # nats
-    view: PoseHypothesis  # what it makes of the last view
+    view: PoseHypothesis  # how it explains the last view
     n_matches: int = 0  # in all the views that it has explained
 
 
@@ -68,7 +68,7 @@ class Track(NamedTuple):
 
     pose: Pose2D | None  # of the last view; None if unable
     status: Status
-    reason: str | None
+    reason: Reason | None  # why there is no pose
     confidence: float  # 0 to 1
     covariance: np.ndarray | None  # `(3, 3)`
     alternatives: tuple[tuple[Pose2D, float], ...]  # all poses that are believed, with their shares, best first
@@ -77,7 +77,7 @@ class Track(NamedTuple):
 def carried_on(hypothesis: CarriedPose, motion: Motion) -> CarriedPose:
     """Return a hypothesis after a motion: x + R(theta) (forward, left), theta + turn, and F P F^T + G Q G^T."""
     x, y, theta = hypothesis.mean
-    rotation = rotations(np.array(theta))
+    rotation = rotation_2d(theta)
     step = rotation @ np.array([motion.forward, motion.left])
     by_state, by_motion = np.eye(3), np.eye(3)
     by_state[:2, 2] = -step[1], step[0]
@@ -132,7 +132,7 @@ class SemanticTracker:
         return self._answer()
 
     def _views(self, observations: Sequence[Observation], predicted: list[CarriedPose]) -> list[PoseHypothesis]:
-        """Return the poses of a view: those of its own search, and what it makes of the belief's poses."""
+        """Return the poses of a view: those of its own search, and those of the belief refitted to it."""
         views = list(rank_poses(observations, self.semantic_map, self.evidence, SHORT_LIST))
         if not (predicted and len(observations)):
             return views
@@ -144,10 +144,10 @@ class SemanticTracker:
     def _joined(self, predicted: list[CarriedPose], views: list[PoseHypothesis], n_observations: int) -> Belief:
         """Return the best few of all pairs of a carried hypothesis and a view's pose, and of the views' poses alone.
 
-        A view's pose alone is one that the rig was carried to from elsewhere.
+        A view's pose alone stands for a rig that was carried there from elsewhere.
         """
         belief = self.belief
-        if not views:  # what was believed is carried on, no surer than before
+        if not views:  # The belief is carried on, no surer than before.
             return belief._replace(hypotheses=tuple(predicted))
         log_nothing = belief.log_nothing + TEMPER * n_observations * score_of_nothing(self.semantic_map)
         prior = -np.log(2 * np.pi * area(self.semantic_map))
@@ -179,5 +179,5 @@ class SemanticTracker:
                 confidence *= plausibility(best.view) if n_matches >= MIN_INLIERS else 0.0
         reason = why_unable(len(alternatives), n_matches, confidence, self.min_confidence)
         if reason is not None:
-            return Track(None, UNABLE, reason, confidence, None, alternatives)
-        return Track(alternatives[0][0], OK, None, confidence, best.covariance, alternatives)
+            return Track(None, Status.UNABLE, reason, confidence, None, alternatives)
+        return Track(alternatives[0][0], Status.OK, None, confidence, best.covariance, alternatives)

@@ -9,8 +9,8 @@ spherical stereo camera". An image pair walks through figure 2 in this order; a 
     pose/          2.6: the least-squares fit, whether its residuals contradict it, and the answer
     localizer      the steps themselves
 
-recording reads files beside panoramas: the truth, and boxes drawn by hand. Images are BGR uint8 arrays, as OpenCV reads
-them. Boxes and points on them are in edge coordinates (`panorama`).
+outcomes holds every word with which a step says that it found nothing, and drawn_boxes reads boxes drawn by hand.
+Images are BGR uint8 arrays, as OpenCV reads them. Boxes and points on them are in edge coordinates (`panorama`).
 """
 
 # ruff: noqa: F401 - the public names
@@ -18,15 +18,15 @@ from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.detection.detector import Detector, YoloDetector
 from course_lib.spherical_stereo.detection.seam import extend_seam
+from course_lib.spherical_stereo.drawn_boxes import read_stereo_boxes
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
-from course_lib.spherical_stereo.matching.features import SwappedImagesError
+from course_lib.spherical_stereo.matching.alignment import SwappedImagesError
 from course_lib.spherical_stereo.matching.object_matching import ObjectMatch, match_objects
 from course_lib.spherical_stereo.panorama import StereoRig, direction_to_pixel, open_view, pixel_to_direction
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_covariance, fit_rigid_2d
 from course_lib.spherical_stereo.ranging.object_positions import Noise, disparity_distance
 from course_lib.spherical_stereo.ranging.triangulation import TriangulationError, triangulate, triangulation_covariance
-from course_lib.spherical_stereo.recording import read_stereo_boxes
 from course_lib.spherical_stereo.semantic_map.association import (
     Observation,
     PenaltyWeights,

@@ -158,9 +158,10 @@ def open_view(image: np.ndarray | View, name: str = "image") -> View:
     height, width = image.shape[:2]
     if height < 1 or width != 2 * height:
         raise PanoramaError(f"{name} is {width} x {height} pixels; a panorama is twice as wide as high")
-    is_blank = bool((image > BLANK_LEVEL).any(axis=-1).mean() <= HOT_SHARE)
-    # Nearly every colour image shows its colour in a few pixels, so the whole is seldom looked at.
-    is_grey = all((part == part[..., :1]).all() for part in (image[::16, ::16], image))
+    # A few pixels of nearly every image show that it is neither black nor grey, so the whole is seldom looked at.
+    parts = image[::16, ::16], image
+    is_blank = all((part > BLANK_LEVEL).any(axis=-1).sum() / (width * height) <= HOT_SHARE for part in parts)
+    is_grey = all((part == part[..., :1]).all() for part in parts)
     if is_grey and not is_blank:
         raise PanoramaError(f"{name} is a grey image (its three channels are equal); a colour image is needed")
     return View(width, height, image, is_blank=is_blank)
@@ -174,10 +175,9 @@ def open_pair(upper_image: np.ndarray | View, lower_image: np.ndarray | View) ->
     return upper, lower
 
 
-def read_panorama(path: str | os.PathLike) -> np.ndarray:
-    """Read the panorama in an image file, uint8 BGR `(H, W, 3)`. An alpha channel is left out."""
+def read_panorama(path: str | os.PathLike) -> View:
+    """Read and check the panorama in an image file. An alpha channel is left out."""
     image = read_image(path, "image", PanoramaError)
     if image.ndim == 3 and image.shape[2] == 4:
         image = np.ascontiguousarray(image[..., :3])
-    open_view(image, str(path))
-    return image
+    return open_view(image, str(path))

@@ -9,7 +9,6 @@ from pathlib import Path
 from courseware.commands import arguments as options
 from courseware.commands.output import print_and_write, progress_bar
 
-SURE = 0.8  # the lowest confidence of an answer, as in `SemanticLocalizer`
 OUT = Path("results/ambiguity")
 OUT_HELP = f"write ambiguity.json and a picture for each matcher here (default: {OUT.as_posix()})"
 MIN_SHARE = 0.001  # of the belief, below which a pair is not listed
@@ -65,11 +64,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def ambiguity_numbers(found, semantic_map) -> dict:
-    """An ambiguity map in numbers, for JSON. Landmarks are numbered from 0, in the map's order."""
+    """Return an ambiguity map in numbers, for JSON. Landmarks are numbered from 0, in the map's order."""
+    from course_lib.beyond.look_alikes.confidence import MIN_CONFIDENCE
+
     return {
         "places": len(found.places),
         "mean_confidence": float(found.confidence.mean()),
-        "sure_percent": float(100.0 * (found.confidence >= SURE).mean()),
+        "sure_percent": float(100.0 * (found.confidence >= MIN_CONFIDENCE).mean()),
         "confused": [
             {
                 "landmarks": [i, j],
@@ -84,11 +85,12 @@ def ambiguity_numbers(found, semantic_map) -> dict:
 
 
 def ambiguity_text(name: str, numbers: dict) -> str:
-    """The same in words."""
-    lines = [
-        f"{name}: of {numbers['places']} free places {numbers['sure_percent']:.0f} % are sure (confidence {SURE:g} or "
-        f"more); mean confidence of the right pose {numbers['mean_confidence']:.2f}"
-    ]
+    """Return the same in words."""
+    from course_lib.beyond.look_alikes.confidence import MIN_CONFIDENCE
+
+    sure = f"{numbers['sure_percent']:.0f} % are sure (confidence {MIN_CONFIDENCE:g} or more)"
+    mean = f"mean confidence of the right pose {numbers['mean_confidence']:.2f}"
+    lines = [f"{name}: of {numbers['places']} free places {sure}; {mean}"]
     if not numbers["confused"]:
         lines.append(f"  no two objects are confused in more than {100 * MIN_SHARE:g} %")
     for one in numbers["confused"]:

@@ -28,29 +28,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Localizes and prints; 0 also where there is no pose, which is an answer."""
+    """Localize and print. Return 0 also if there is no pose, because that is an answer."""
     from course_lib.beyond.look_alikes.matchers import matcher
-    from course_lib.spherical_stereo.detection.detector import find_objects
+    from course_lib.spherical_stereo.drawn_boxes import read_stereo_boxes
     from course_lib.spherical_stereo.localizer import SemanticLocalizer
-    from course_lib.spherical_stereo.panorama import StereoRig, open_pair, read_panorama
-    from course_lib.spherical_stereo.recording import read_stereo_boxes
+    from course_lib.spherical_stereo.panorama import StereoRig, read_panorama
     from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
     by_detector = [arguments.detector, arguments.input_size, arguments.score_threshold]
     if arguments.boxes and any(one is not None for one in by_detector):
         raise ValueError("--boxes says what is in the images, and so does a detector: give one of the two")
     options.check_options(arguments)
-    association, exactly = matcher(arguments.association), arguments.paper
-    rig, semantic_map = StereoRig(arguments.baseline), SemanticMap.load(arguments.map)
-    localizer = SemanticLocalizer(rig, semantic_map, association=association, reject_implausible=not exactly)
-    views = open_pair(read_panorama(arguments.upper), read_panorama(arguments.lower))
-    detector = None
-    if arguments.boxes:
-        upper, lower = read_stereo_boxes(arguments.boxes).on(*views)
-    else:
-        detector = options.chosen_detector(arguments)
-        upper, lower = (find_objects(view, detector) for view in views)
-    found = localizer.localize_views(upper, lower)
+    association, rig = matcher(arguments.association), StereoRig(arguments.baseline)
+    semantic_map = SemanticMap.load(arguments.map)
+    views = read_panorama(arguments.upper), read_panorama(arguments.lower)
+    boxes = read_stereo_boxes(arguments.boxes) if arguments.boxes else None
+    detector = options.chosen_detector(arguments) if boxes is None else None
+    how = {"association": association, "reject_implausible": not arguments.paper}
+    found = SemanticLocalizer(rig, semantic_map, detector, **how).localize(*views, boxes)
     summary = {
         **{name: str(getattr(arguments, name)) for name in ("upper", "lower", "map")},
         "baseline_m": arguments.baseline,

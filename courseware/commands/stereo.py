@@ -45,21 +45,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Match, measure, and print."""
+    from course_lib.spherical_stereo.drawn_boxes import read_stereo_boxes
+    from course_lib.spherical_stereo.matching.alignment import match_features
     from course_lib.spherical_stereo.matching.epipolar import EPIPOLAR_TOLERANCE
-    from course_lib.spherical_stereo.matching.features import find_features, match_features
+    from course_lib.spherical_stereo.matching.features import find_features
     from course_lib.spherical_stereo.matching.object_matching import match_views
     from course_lib.spherical_stereo.panorama import StereoRig, open_pair, read_panorama
     from course_lib.spherical_stereo.ranging.object_positions import measure_objects
-    from course_lib.spherical_stereo.recording import read_stereo_boxes
 
     require_positive("--baseline", arguments.baseline, "metres")
     require_positive("--sigma-pixels", arguments.sigma_pixels, "pixels")
     check_options(arguments)
     rig = StereoRig(arguments.baseline)
     boxes = read_stereo_boxes(arguments.boxes) if arguments.boxes else None
-    upper, lower = open_pair(read_panorama(arguments.upper), read_panorama(arguments.lower))
-    if boxes:
-        upper, lower = boxes.on(upper, lower)
+    views = read_panorama(arguments.upper), read_panorama(arguments.lower)
+    upper, lower = boxes.on(*views) if boxes else open_pair(*views)
     started = time.perf_counter()
     upper, lower = find_features(upper), find_features(lower)
     features = match_features(upper.features, lower.features)

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.beyond.look_alikes.evidence import detection_probabilities, free_space_costs
-from course_lib.beyond.look_alikes.hypotheses import rotations
 from course_lib.beyond.look_alikes.matchers import matcher
 from course_lib.spherical_stereo.panorama import StereoRig
+from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from course_lib.spherical_stereo.ranging.object_positions import Noise
 from course_lib.spherical_stereo.ranging.triangulation import triangulation_covariance
 from course_lib.spherical_stereo.semantic_map.association import Association, Observation
@@ -31,7 +31,7 @@ class AmbiguityMap(NamedTuple):
     step: float  # Metres between neighbours
 
     def most_confused(self, n: int = 5) -> list[tuple[int, int, float]]:
-        """The n pairs of landmarks that are confused most, (i, j, mean share over all places), i < j."""
+        """Return the n pairs of landmarks that are confused most, (i, j, mean share over all places), i < j."""
         both = self.confused.mean(axis=0)
         both = both + both.T
         i, j = np.triu_indices(len(both), 1)
@@ -48,7 +48,7 @@ def imagined_observations(
     """
     chance = detection_probabilities(semantic_map, np.asarray(pose, dtype=np.float64)[None])[0]
     seen = np.flatnonzero(rng.random(len(semantic_map)) < chance)
-    places = (semantic_map.positions[seen] - pose[:2]) @ rotations(np.array(pose[2]))  # R^T (m - t), row by row
+    places = (semantic_map.positions[seen] - pose[:2]) @ rotation_2d(pose[2])  # R^T (m - t), row by row
     observations = []
     for landmark, place in zip(seen, places, strict=True):
         covariance = stereo_covariance(place)
@@ -59,7 +59,7 @@ def imagined_observations(
 
 
 def stereo_covariance(place: np.ndarray) -> np.ndarray:
-    """`(2, 2)` of an object at a place `(2,)` in the body frame, square metres, as `object_places` gives it."""
+    """Return the covariance `(2, 2)` of an object at a place `(2,)` in the body frame, as `position_objects` does."""
     upper = np.array([*place, OBJECT_HEIGHT - RIG.upper_height])
     lower = upper + np.array([0.0, 0.0, RIG.baseline])
     sigma, centroid, _ = Noise()
@@ -99,7 +99,7 @@ def ambiguity_map(
 
 
 def judged_belief(found: Association, shown: list[int], place: np.ndarray, near: float) -> tuple[float, list]:
-    """How sure an association is of what is right, and its wrong matches: (landmark shown, landmark taken, share).
+    """Return the confidence in the right pose, and the wrong matches: (landmark shown, landmark taken, share).
 
     shown: the landmark of every observation. A pose is right within `near` metres of the place.
     """

@@ -1,4 +1,4 @@
-"""Does distance improve the pose? Paper 2 beside a pose from directions alone, from the same matches.
+"""Does distance improve the pose? Paper 2 against a pose from directions alone, from the same matches.
 
 Earlier methods had one camera: they knew in which direction an object stands, but not how far away it is (paper 2,
 section 1). Paper 2 says that distance improves the accuracy (section 4). Here every fit gets the same pairs of object

@@ -40,13 +40,17 @@ MAX_ALTERNATIVES = 3
 REACHED = 0.03, 1.0  # metres, degrees
 VIEWS, VIEW_TURN = 12, np.deg2rad(30.0)  # at most so many views, the robot turning so far to the next: once around
 ODOMETRY_SIGMA = 0.05, np.deg2rad(1.0)  # share of a motion; least of a turn (chosen)
-MEDIANS = {"semantic_m": 3, "position_m": 4, "rotation_deg": 2}  # of what medians are told, with their digits
+MEDIANS = {
+    "semantic_m": 3,
+    "position_m": 4,
+    "rotation_deg": 2,
+}  # medians that are printed, with their digits
 
 
 def run(runner: Runner, *, seed: int, seeds: list[int] | None, places: int, detector: Path | None) -> Outcome:
     """Run `demo finale`: the rooms that are missing, then all places together."""
     seeds, network = seeds or [seed], (detector or data_path("detector")).absolute()
-    YoloDetector.load(network)  # what is wrong with it is told now, not after the first room
+    YoloDetector.load(network)  # A fault of its files stops the run now, not after the first room.
     points = [{"seed": one, "places": places, "detector": str(network)} for one in seeds]
     rooms = runner.rows(finale_room, points, "finale", "room")
     result = {"seeds": seeds, **summarize([place for room in rooms for place in room])}
@@ -123,7 +127,7 @@ def is_known(estimate: AnnealedEstimate) -> bool:
 
 
 def odometry(ahead: float, turn: float, rng: Generator) -> tuple[float, float]:
-    """What wheels tell of a motion: metres ahead and radians counterclockwise, each with noise of `ODOMETRY_SIGMA`."""
+    """Return a motion as wheels measure it: metres ahead, radians counterclockwise, with noise of `ODOMETRY_SIGMA`."""
     share, least = ODOMETRY_SIGMA
     return ahead * (1.0 + share * rng.standard_normal()), turn + np.hypot(share * turn, least) * rng.standard_normal()
 
@@ -135,7 +139,7 @@ def best_start(renderer: DepthRenderer, starts: Sequence[Pose2D], depths: Sequen
 
 
 def starts_of(found: Localization, scene_map: SceneMap) -> list[Pose2D]:
-    """Where the depth filter starts: the semantic pose; without one, the best of those weighed that lie on the map."""
+    """Return the depth filter's starts: the semantic pose, or else the best weighed poses that lie on the map."""
     if found.pose is not None:
         return [found.pose]
     poses = [one.pose for one in found.alternatives[:MAX_ALTERNATIVES]]
@@ -143,12 +147,12 @@ def starts_of(found: Localization, scene_map: SceneMap) -> list[Pose2D]:
 
 
 def start_state(pose: Pose2D) -> np.ndarray:
-    """State `(6,)` of the depth camera on a robot at a semantic pose: height, roll and pitch are those of standing."""
+    """Return the depth camera's state `(6,)` on a robot at a semantic pose: it stands, so roll and pitch are 0."""
     return np.array([pose.x, pose.y, CAMERA_HEIGHT, 0.0, 0.0, pose.theta])
 
 
 def follow(renderer: DepthRenderer, start: np.ndarray, depths: Sequence, seed: int) -> list[AnnealedEstimate]:
-    """What the depth filter makes of the images from one start, a state `(6,)`."""
+    """Return the depth filter's estimates for the images, from one start, a state `(6,)`."""
     localizer = AnnealedLocalizer(renderer, seed=seed)
     localizer.initialize(start)
     with warnings.catch_warnings(action="ignore", category=NoMeasurementWarning):  # the estimate's status says so
@@ -156,12 +160,12 @@ def follow(renderer: DepthRenderer, start: np.ndarray, depths: Sequence, seed: i
 
 
 def mean_score(estimates: Sequence[AnnealedEstimate]) -> float:
-    """Mean raw score of a run: what starts are compared by. NaN where a frame held no measurement."""
+    """Return the mean raw score of a run, by which starts are compared. NaN if a frame held no measurement."""
     return float(np.mean([estimate.score for estimate in estimates]))
 
 
 def robot_states(pose: np.ndarray, rng: Generator) -> np.ndarray:
-    """True states `(FRAMES, 6)` of the depth camera on a robot that stands at x, y, heading and rolls on slowly."""
+    """Return true states `(FRAMES, 6)` of the depth camera on a robot that stands at x, y, heading and rolls slowly."""
     height, level = LEVEL_SIGMA
     tilt = level * rng.standard_normal((FRAMES, 2))
     z = CAMERA_HEIGHT + height * rng.standard_normal(FRAMES)
@@ -170,7 +174,7 @@ def robot_states(pose: np.ndarray, rng: Generator) -> np.ndarray:
 
 
 def summarize(places: Sequence[dict]) -> dict[str, float | None]:
-    """The numbers of the table; a median of nothing is None."""
+    """Return the numbers of the table; a median of nothing is None."""
     return {
         "places": len(places),
         "reached": sum(place["reached"] for place in places),

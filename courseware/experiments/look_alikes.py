@@ -1,6 +1,6 @@
 """Rooms that look alike: answers within half a metre and 10 degrees, wrong ones given out, and none given.
 
-Here a pose is judged by where it is. The paper's measure, all matches right, stands beside it.
+Here a pose is judged by where it is. The tables also give the paper's measure, all matches right.
 """
 
 from collections.abc import Callable, Sequence
@@ -11,11 +11,10 @@ import numpy as np
 
 from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.beyond.look_alikes.evidence import Evidence
-from course_lib.beyond.look_alikes.hypotheses import rotations
 from course_lib.beyond.look_alikes.matchers import ASSOCIATIONS
 from course_lib.beyond.several_views import Motion, SemanticTracker
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, rotation_2d
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 from courseware.experiments.intervals import share_intervals, wilson_percent
 from courseware.experiments.observed_rooms import judged_poses, stored_map, stored_observations
@@ -57,16 +56,16 @@ class Answer(NamedTuple):
     dx_m: float  # Absolute error of the pose given out; NaN without one
     dy_m: float
     dtheta_deg: float
-    all_matches_right: bool | None  # The paper's measure; None where nobody told what each observation shows
+    all_matches_right: bool | None  # The paper's measure; None if nobody knows what each observation shows
 
 
 def is_right(errors: tuple[float, float, float]) -> bool:
-    """Whether an error is within half a metre and 10 degrees; False for NaN."""
+    """Return whether an error is within half a metre and 10 degrees; False for NaN."""
     return bool(np.hypot(*errors[:2]) <= MAX_ERROR_M and errors[2] <= MAX_TURN_DEG)
 
 
 def judged(where: tuple, method: str, given: Pose2D | None, best: Pose2D | None, confidence, true_pose, pairs_right):
-    """The `Answer` of one pose. where: (seed, experiment, name). best: the most believed pose, be it given or not."""
+    """Return the `Answer` of a pose. where: (seed, experiment, name). best: the most believed pose, given or not."""
     errors = pose_errors(given, true_pose)
     kind = UNANSWERED if given is None else CORRECT if is_right(errors) else WRONG
     right = is_right(pose_errors(best, true_pose))
@@ -77,7 +76,7 @@ def judged(where: tuple, method: str, given: Pose2D | None, best: Pose2D | None,
 def answers_of_rooms(
     rooms: Sequence[dict], associations: dict[str, Callable], wrong_map: bool = False, progress: Callable = iter
 ) -> list[Answer]:
-    """Every pose of every room by every matcher, one view each; none is rejected by its residuals.
+    """Localize every pose of every room by every matcher, one view each; none is rejected by its residuals.
 
     wrong_map: look for every room on the map of the next one, where no answer is right.
     """
@@ -94,8 +93,8 @@ def answers_of_rooms(
 
 
 def measured_motion(start: np.ndarray, end: np.ndarray, rng: np.random.Generator) -> Motion:
-    """What odometry says of the way between two poses `(3,)` [x, y, theta], with its noise."""
-    forward, left = rotations(np.array(start[2])).T @ (np.asarray(end[:2]) - start[:2])
+    """Return the motion between two poses `(3,)` [x, y, theta] as odometry measures it, with noise."""
+    forward, left = rotation_2d(start[2]).T @ (np.asarray(end[:2]) - start[:2])
     turn = wrap_angle(end[2] - start[2])
     along = MIN_STEP_SIGMA + SLIP * np.hypot(forward, left)
     sigma = np.array([along, along, MIN_TURN_SIGMA + SLIP * abs(turn)])
@@ -145,7 +144,7 @@ def followed(where: tuple, semantic_map: SemanticMap, poses: np.ndarray, views: 
 
 
 def answers_table(answers: Sequence[Answer]) -> dict:
-    """Shares in percent with their 95 % intervals (Wilson's, and over rooms by bootstrap), and errors when correct."""
+    """Return shares in percent with 95 % intervals (Wilson's, and over rooms by bootstrap), and errors when correct."""
     seeds, n = np.array([one.seed for one in answers]), len(answers)
     table: dict = {"n": n}
     for kind in KINDS:
@@ -162,7 +161,7 @@ def answers_table(answers: Sequence[Answer]) -> dict:
 
 
 def tables_by_method(answers: Sequence[Answer]) -> dict[str, dict]:
-    """`answers_table` of every method, in the order in which they came."""
+    """Return the `answers_table` of every method, in the order in which they came."""
     methods = dict.fromkeys(one.method for one in answers)
     return {method: answers_table([one for one in answers if one.method == method]) for method in methods}
 
@@ -194,7 +193,7 @@ def answers_summary(
     ablation: bool = False,
     progress: Callable = iter,
 ) -> dict:
-    """All of it: one view, several views where there are any, risk over coverage, and the ablation on either map."""
+    """Return one view, several views if there are any, risk over coverage, and the ablation on either map."""
     one_view = answers_of_rooms(rooms, {name: ASSOCIATIONS[name] for name in methods}, progress=progress)
     found: dict = {"one_view": tables_by_method(one_view)}
     if "consistent" in methods:
@@ -214,7 +213,7 @@ def answers_summary(
 
 
 def answer_tables(answers: dict) -> str:
-    """Shares in percent with Wilson's 95 % intervals; mean errors of the correct ones."""
+    """Return a table of shares in percent with Wilson's 95 % intervals, and mean errors of the correct answers."""
     groups = {"One view": answers["one_view"]}
     if "several_views" in answers:
         groups[f"{answers['n_views']} views, consistent"] = answers["several_views"]

@@ -1,7 +1,7 @@
 """What paper 2's method sees in generated rooms: a room a seed, poses at both heights, and views a few steps on.
 
 Sections 2.2 to 2.4 take long: they are done once for each room and kept as a record. Map matching and fit (2.5, 2.6)
-are done anew from the records, by every variant.
+are done from the records, by every variant.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -16,7 +16,6 @@ from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.pose.localization import Localization
-from course_lib.spherical_stereo.recording import StereoPair, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 from courseware.experiments.room import SOURCES, localize_pair
@@ -25,6 +24,7 @@ from courseware.simulation.room import look_alike_recording
 from courseware.simulation.room.look_alike_recording import RecordingModels, WalkModel, experiment_of, surveyed_room
 from courseware.simulation.room.measurement_places import CAMERA_HEIGHTS
 from courseware.simulation.room.scene import Room
+from courseware.simulation.room.stereo_recording import StereoPair, read_stereo_recording
 
 MODELS = RecordingModels()  # those of the reported tables
 
@@ -103,7 +103,7 @@ def photographed_pairs(
 
 
 def observe_views(seed: int, poses: int, network: Sequence, views: int) -> list[dict]:
-    """Make the room of a seed anew, walk on from each of its first poses, and note what is seen there; for JSON.
+    """Make the room of a seed again, walk on from each of its first poses, and note what is seen there; for JSON.
 
     views: of a sequence, the first one counted, which is a pose of `observe_room` as it stands there.
     """

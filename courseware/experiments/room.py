@@ -17,11 +17,11 @@ from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
 from course_lib.spherical_stereo.detection.detected_object import Detection, box_centre
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.outcomes import ObjectOutcome
 from course_lib.spherical_stereo.panorama import pixel_to_direction
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.ranging.object_positions import disparity_distance
-from course_lib.spherical_stereo.ranging.triangulation import OK, object_position, triangulation_outcome
-from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, TrueObject, read_stereo_recording
+from course_lib.spherical_stereo.ranging.triangulation import object_position, triangulation_outcome
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 from courseware.experiments import bearing_only as directions
 from courseware.experiments import room_evaluation
@@ -30,6 +30,7 @@ from courseware.experiments.room_tables import tables
 from courseware.experiments.runner import Outcome, Runner
 from courseware.paths import data_path
 from courseware.simulation.room.data import make_room_data
+from courseware.simulation.room.stereo_recording import StereoPair, StereoRecording, TrueObject, read_stereo_recording
 
 SHIPPED_SEED = 4  # of data/room
 SOURCES = ("images", "exact_boxes")
@@ -38,7 +39,7 @@ SAME_DIRECTION = np.deg2rad(3.0)  # azimuth within which two observations are of
 
 
 class PairResult(NamedTuple):
-    """What the method made of one pair of panoramas, and what it should have made of it."""
+    """The method's result for one pair of panoramas, and the right one."""
 
     pair: StereoPair
     localization: Localization
@@ -106,7 +107,7 @@ def run(
 
 
 def _summarize(experiments: dict, summaries: dict, semantic_map: SemanticMap, baseline: float) -> dict:
-    """Tables 3 to 5 by experiment and association method, stereo matching and distances over all poses."""
+    """Return tables 3 to 5 by experiment and association method, and stereo matching and distances over all poses."""
     from_images, from_boxes = ([one for by in experiments.values() for one in by[source]] for source in SOURCES)
     ranges = {
         "exact_boxes": range_errors(from_boxes, semantic_map, baseline, "box_centre"),
@@ -130,7 +131,7 @@ def _summarize(experiments: dict, summaries: dict, semantic_map: SemanticMap, ba
 
 
 def _rows(experiments: dict[str, dict[str, list[PairResult]]]) -> list[dict]:
-    """A row a pose for a CSV file."""
+    """Return a row for each pose, for a CSV file."""
     return [
         {"experiment": experiment, "source": source, "place": one.pair.name}
         | pose_columns(one.pair.pose, one.localization, one.outcome)
@@ -142,7 +143,7 @@ def _rows(experiments: dict[str, dict[str, list[PairResult]]]) -> list[dict]:
 
 
 def pose_columns(true_pose: Sequence[float], found: Localization, judged: PoseOutcome) -> dict:
-    """Columns of a CSV file: the true pose, the estimated one, and what became of it."""
+    """Return columns of a CSV file: the true pose, the estimated one, and its outcome."""
     x, y, theta = map(float, true_pose)
     pose = ("", "", "") if found.pose is None else (round(float(value), 4) for value in found.pose[:3])
     return {
@@ -196,14 +197,14 @@ def experiment_summary(results: Sequence[PairResult]) -> dict:
 
 
 def fitted_by_covariance(found: Localization, localizer: SemanticLocalizer) -> Localization:
-    """Return a localization fitted anew (2.6): each observation weighted by its covariance, not counted alike."""
+    """Return a localization fitted again (2.6), with each observation weighted by its covariance."""
     weighted = copy(localizer)
     weighted.weighted_fit = True
     return weighted.localize_observations(found.observations) if found.observations else found
 
 
 def weighted_summary(results: Sequence[PairResult], localizer: SemanticLocalizer) -> dict:
-    """`experiment_summary` of the same observations and associations, `fitted_by_covariance`."""
+    """Return the `experiment_summary` of the same observations and associations, `fitted_by_covariance`."""
     fitted = [fitted_by_covariance(one.localization, localizer) for one in results]
     return summary([outcome(a, one.pair.pose, one.true_landmarks) for a, one in zip(fitted, results, strict=True)])
 
@@ -250,7 +251,7 @@ def range_errors(
             rays = [pixel_to_direction(box_centre(box), *one.size) for box in boxes]
             if distance == "disparity":
                 measured = np.nan_to_num(disparity_distance(match, *one.size, baseline).horizontal_range, nan=np.inf)
-            elif triangulation_outcome(*rays) == OK:
+            elif triangulation_outcome(*rays) == ObjectOutcome.OK:
                 measured = float(np.linalg.norm(object_position(*rays, baseline)[:2]))
             if true < MAX_RANGE:
                 errors.append(abs(measured - true) / true)
@@ -258,7 +259,7 @@ def range_errors(
 
 
 class RolledPair(NamedTuple):
-    """What the method made of one pair as it was, and of the same images, `width` pixels wide, rolled by `columns` k.
+    """The localizations of one pair as it was, and of the same images, `width` pixels wide, rolled by `columns` k.
 
     That is the view of a rig turned by 2 pi k / W to the left. The pose moves all the same: a detector shifted by less
     than its stride draws boxes a pixel or two elsewhere, half a metre for an object at 6 m (2.4).
@@ -291,7 +292,7 @@ def weigh_by_covariance(pairs: Sequence[RolledPair], localizer: SemanticLocalize
 def compare(pair: RolledPair) -> tuple[bool, float, float]:
     """Return how far rolling the images moved the pose: (agree, metres, radians), NaN without both poses.
 
-    agree: the same objects, told by their directions, were taken for the same landmarks.
+    agree: the same objects, recognized by their directions, were taken for the same landmarks.
     """
     columns, width, straight, rolled = pair
     angle = 2 * np.pi * columns / width

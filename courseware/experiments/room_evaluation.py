@@ -1,4 +1,4 @@
-"""How good is it: tables 2 to 5 of paper 2 (section 3), and the paper's own numbers to stand beside ours."""
+"""How good is it: tables 2 to 5 of paper 2 (section 3), and the paper's own numbers."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -7,9 +7,10 @@ import numpy as np
 
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.detection.detected_object import Detection, box_iou, canonical_label
-from course_lib.spherical_stereo.pose.localization import OK, Localization
+from course_lib.spherical_stereo.outcomes import Status
+from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from course_lib.spherical_stereo.recording import TrueObject
+from courseware.simulation.room.stereo_recording import TrueObject
 
 KINDS = CORRECT, INCORRECT, UNABLE = "correct", "incorrect", "unable"
 MAX_ERROR = 2.0  # m in x and in y; by table 2 exactly 2 m is correct and incorrect, here it is correct
@@ -51,7 +52,7 @@ class PoseOutcome(NamedTuple):
 
 
 def pose_errors(pose: Pose2D | None, true_pose: Sequence[float]) -> tuple[float, float, float]:
-    """|dx|, |dy| in metres and |dtheta| in degrees; NaN without a pose."""
+    """Return |dx|, |dy| in metres and |dtheta| in degrees; NaN without a pose."""
     if pose is None:
         return (np.nan,) * 3
     dx, dy = (abs(float(a - b)) for a, b in zip(pose[:2], true_pose[:2], strict=True))
@@ -65,7 +66,7 @@ def outcome(localization: Localization, true_pose: Sequence[float], true_landmar
     it has no error. Source: paper 2, table 2.
     """
     wrong = wrong_pairs(localization, true_landmarks)
-    if localization.status != OK or len(localization.used_pairs) < MIN_PAIRS:
+    if localization.status != Status.OK or len(localization.used_pairs) < MIN_PAIRS:
         return PoseOutcome(UNABLE, *pose_errors(None, true_pose))
     errors = pose_errors(localization.pose, true_pose)
     return PoseOutcome(CORRECT if not wrong and max(errors[:2]) <= MAX_ERROR else INCORRECT, *errors)
@@ -77,13 +78,13 @@ def wrong_pairs(localization: Localization, true_landmarks: Sequence[int]) -> tu
 
 
 def counts_as_object(thing: TrueObject, width: int) -> bool:
-    """Whether an object is one to be found: half of it visible, its visible box 30 pixels high at a width of 1280."""
+    """Return whether an object must be found: half of it is visible, in a box 30 pixels high at a width of 1280."""
     _, v_min, _, v_max = thing.visible_box
     return thing.visible_fraction >= MIN_VISIBLE and (v_max - v_min) * 1280 / width >= MIN_HEIGHT
 
 
 def _overlaps(detections: Sequence[Detection], objects: Sequence[TrueObject], boxes: str, width: int) -> np.ndarray:
-    """IoU `(n, m)` with the visible or the unoccluded boxes of the objects, 0 where the classes differ."""
+    """Return IoU `(n, m)` with the visible or the unoccluded boxes of the objects, 0 where the classes differ."""
     found, true = [one.box for one in detections], [getattr(thing, boxes) for thing in objects]
     overlap = box_iou(found, true, width) if found and true else np.zeros((len(found), len(true)))
     labels = [np.array([canonical_label(one.label) for one in side], object) for side in (detections, objects)]
@@ -116,7 +117,7 @@ class Matching(NamedTuple):
 def match_detections(
     detections: Sequence[Detection], objects: Sequence[TrueObject], width: int, counts: Sequence[bool] | None = None
 ) -> Matching:
-    """The detections of one panorama, best score first: each takes the free object of its class that it overlaps most.
+    """Judge the detections of a panorama, best score first: each takes the free object of its class it overlaps most.
 
     IoU must be 0.5 at least. counts: whether each object is to be found (None: `counts_as_object`). The others are
     ignored: what finds none, but overlaps one of these that much, is left out of the count.

@@ -1,4 +1,4 @@
-"""What `demo room` prints: tables 1 to 5 with the paper's numbers beside ours, and what sets the two apart."""
+"""The text of `demo room`: tables 1 to 5 with the paper's numbers next to ours, and how the two differ."""
 
 from courseware.experiments.room_evaluation import ERRORS, KINDS, PAPER_TABLE_3, PAPER_TABLE_4, PAPER_TABLE_5
 from courseware.simulation.room.measurement_places import MEASUREMENT_PLACES
@@ -12,7 +12,7 @@ MANY_PAIRS = 8  # so many that the others outvote two wrong ones
 
 
 def tables(summary: dict) -> str:
-    """Tables 1 to 5, the paper's numbers beside ours."""
+    """Return tables 1 to 5, with the paper's numbers next to ours."""
     lines = ["Table 1: places (x [m], y [m]) and the two headings [deg] at each"]
     lines += [
         f"  {p.place:2d}: ({p.x:.2f}, {p.y:.2f})  {p.headings_deg[0]:4.0f}, {p.headings_deg[1]:4.0f}"
@@ -64,7 +64,7 @@ def tables(summary: dict) -> str:
 
 
 def remarks(summary: dict) -> list[str]:
-    """What sets the numbers from images apart from the paper's: a sentence for each difference that is there."""
+    """Return a sentence for each difference between the numbers from images and the paper's."""
     ours = [next(iter(summary[f"experiment_{number}"].values())) for number in (1, 2)]
     sentences = []
     if all(values["unable_percent"] <= FEW_UNABLE_PERCENT for values in ours):

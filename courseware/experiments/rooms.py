@@ -1,7 +1,7 @@
 """Run paper 2's room experiment in randomly generated rooms of look-alikes; print rates and errors with intervals.
 
-Poses of one room see the same look-alikes. So beside the 95 % interval of a share of independent poses (Wilson's)
-stands one that draws whole rooms (bootstrap). Where it is wider, believe it.
+Poses of one room see the same look-alikes. So each share has two 95 %
+intervals: Wilson's, for independent poses, and a bootstrap over whole rooms. If the second is wider, believe it.
 """
 
 from collections.abc import Iterator, Sequence
@@ -98,7 +98,7 @@ def _poses_from_images(rooms: Sequence[dict], judged: Sequence[JudgedPose]) -> I
 
 
 def rooms_summary(rooms: Sequence[dict], judged: Sequence[JudgedPose]) -> dict:
-    """Tables of many rooms: by experiment (1, 2: the heights; both), source and method; and what lies behind them."""
+    """Return tables of many rooms by experiment (1, 2: the heights; both), source and method, and their background."""
     tables: dict = {"experiment_1": {}, "experiment_2": {}, "both": {}}
     for experiment, source, method in product(tables, SOURCES, METHODS):
         own = [one for one in judged if (one.source, one.method) == (source, method)]
@@ -125,7 +125,7 @@ def rooms_summary(rooms: Sequence[dict], judged: Sequence[JudgedPose]) -> dict:
 
 
 def rates_and_errors(judged: Sequence[JudgedPose]) -> dict:
-    """`room_evaluation.summary` with 95 % intervals of the three shares, over poses and over rooms, in percent."""
+    """Return `room_evaluation.summary` with 95 % intervals of the three shares, over poses and over rooms, percent."""
     found = summary([one.outcome for one in judged])
     seeds = np.array([one.seed for one in judged])
     for kind in KINDS:
@@ -134,7 +134,7 @@ def rates_and_errors(judged: Sequence[JudgedPose]) -> dict:
 
 
 def wrong_pair_causes(rooms: Sequence[dict], judged: Sequence[JudgedPose]) -> dict:
-    """The wrong pairs of the paper's method: poses that have one, what was taken for what (nothing: or two at once)."""
+    """Count the paper's wrong pairs: poses that have one, and what was mixed up (nothing: no object, or two)."""
     alike = {room["seed"]: room["look_alike"]["label"] for room in rooms}
     causes = {source: {"poses": 0, "look_alikes": 0, "others": 0, "nothing": 0} for source in SOURCES}
     for one in (one for one in judged if one.method == "paper"):
@@ -147,7 +147,7 @@ def wrong_pair_causes(rooms: Sequence[dict], judged: Sequence[JudgedPose]) -> di
 
 
 def tables(summary: dict) -> str:
-    """Everything about the rooms, the paper's numbers beside ours."""
+    """Return the text about the rooms, with the paper's numbers next to ours."""
     alike, objects, heights = summary["look_alikes"], summary["objects_a_room"], CAMERA_HEIGHTS.items()
     by_run = groupby(enumerate(summary["seeds"]), key=lambda one: one[1] - one[0])
     runs = [[seed for _, seed in run] for _, run in by_run]  # Seeds with their runs joined: 1-5, 8.
@@ -186,7 +186,7 @@ def tables(summary: dict) -> str:
 
 
 def tilt_table(tilts: dict) -> str:
-    """Rates and errors over the relative tilt of the two cameras; both heights together."""
+    """Return a table of rates and errors over the relative tilt of the two cameras, both heights together."""
     lines = [
         "Lower camera tilted against the upper one, both heights",
         f"{'':42}{'correct [%]':>12}{'incorrect':>11}{'unable':>8}",
@@ -205,7 +205,7 @@ def _row(name: str, cells: str) -> str:
 
 
 def _rows(by_source: dict, cells_of, *which: str) -> list[str]:
-    """A row for each source and method: its name, and what is told of its numbers."""
+    """Return one row for each source and method: its name and its formatted numbers."""
     return [
         _row(f"{WORDS[source]}, {WORDS[method]}", cells_of(values, *which))
         for source, by_method in by_source.items()
@@ -218,7 +218,7 @@ def _rates(values: dict) -> str:
 
 
 def _shares(values: dict) -> str:
-    """Every kind's share with its intervals over poses and, of several rooms, over rooms."""
+    """Return every kind's share with its intervals over poses and, if there are several rooms, over rooms."""
     texts = []
     for kind in KINDS:
         both = values[f"{kind}_wilson_percent"], values[f"{kind}_rooms_percent"]
@@ -236,7 +236,7 @@ def _paper_shares(number: int) -> str:
 
 
 def _group(values: dict, kind: str) -> str:
-    """How many poses of a kind there are, and their errors."""
+    """Return the number of poses of a kind, and their errors."""
     group = values[kind]
     if not group["n"]:
         return f"{0:5d}{'none':>16}"

@@ -13,9 +13,11 @@ from course_lib.beyond.look_alikes.consistent import associate_consistent
 from course_lib.files import temporary_folder
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
-from course_lib.spherical_stereo.pose.localization import OK, Localization
-from courseware.experiments.look_alikes import MAX_ERROR_M, MAX_TURN_DEG, pose_errors
+from course_lib.spherical_stereo.outcomes import Status
+from course_lib.spherical_stereo.pose.localization import Localization
+from courseware.experiments.look_alikes import MAX_ERROR_M, MAX_TURN_DEG
 from courseware.experiments.observed_rooms import MODELS, rig_of_walk
+from courseware.experiments.room_evaluation import pose_errors
 from courseware.experiments.troubled_frames import Arrival, Gate, Spoil, troubles_of
 from courseware.simulation.room.look_alike_recording import WalkModel, photograph_walks, surveyed_room
 
@@ -86,8 +88,8 @@ def walk_trouble(
         for arrival, true in zip(arrivals, true_poses, strict=True):
             watched = None if arrival.image is None else rig.localize(*arrival.image, arrival.time)
             outcome = NO_IMAGE if watched is None else watched.outcome
-            frame = {"outcome": outcome, "confident": outcome == OK, "position_m": None, "rotation_deg": None}
-            if outcome == OK:
+            frame = {"outcome": outcome, "confident": outcome == Status.OK, "position_m": None, "rotation_deg": None}
+            if outcome == Status.OK:
                 dx, dy, frame["rotation_deg"] = pose_errors(watched.localization.pose, true)
                 frame["position_m"] = float(np.hypot(dx, dy))
             frames.append(frame)

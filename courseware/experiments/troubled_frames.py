@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.beyond.guarded_depth import OUTCOMES
-from course_lib.spherical_stereo.pose import localization
+from course_lib.spherical_stereo.outcomes import Reason
 
 STREAM = 0x7B0B1E  # joins a recording's seed
 GOOD_FRAMES = 10  # after a trouble, before recovery is asked
@@ -16,7 +16,7 @@ LEFT_AT_THE_END = GOOD_FRAMES + 2  # frames, never troubled, so that most troubl
 SECOND = 1.0
 USUAL_QUANTILE = 0.95  # of the undisturbed run's errors: what is within is usual
 FAULTS = frozenset(OUTCOMES) - {"tracked", "doubtful", "lost"} | {
-    localization.BLANK, localization.SWAPPED, localization.TURNED, localization.MOMENTS,
+    Reason.BLANK, Reason.SWAPPED, Reason.TURNED, Reason.MOMENTS,
 }  # fmt: skip
 """Outcomes that blame the sensor: of a good frame they are false alarms."""
 

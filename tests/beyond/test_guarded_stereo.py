@@ -4,8 +4,8 @@ import numpy as np
 
 from course_lib.beyond.guarded_stereo import GuardedRig
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.outcomes import Reason
 from course_lib.spherical_stereo.panorama import StereoRig
-from course_lib.spherical_stereo.pose import localization as outcomes
 from tests.spherical_stereo.stereo_scene import BASELINE, KnowingDetector, mapped_scene, pair_from
 
 MAP = mapped_scene()[2]
@@ -19,7 +19,7 @@ def test_a_good_pair_is_what_the_localizer_says_and_one_exchanged_not_new_or_of_
     assert (seen.outcome, seen.missed) == ("ok", 0)
     assert seen.localization.pose == alone.pose
     assert np.array_equal(seen.localization.covariance, alone.covariance)
-    assert rig.localize(HERE[1], HERE[0], 1.0).outcome == outcomes.SWAPPED
+    assert rig.localize(HERE[1], HERE[0], 1.0).outcome == Reason.SWAPPED
     assert rig.localize(*HERE[:2], 2.0).outcome == "ok"
     again = rig.localize(HERE[0].copy(), HERE[1].copy(), 3.0)
     assert (again.outcome, again.localization) == ("repeated", None)
@@ -28,6 +28,6 @@ def test_a_good_pair_is_what_the_localizer_says_and_one_exchanged_not_new_or_of_
     assert rig.localize(*THERE[:2], 6.0).missed == 2
     for time, upper, lower in ((7.0, HERE, THERE), (8.0, THERE, HERE)):
         seen = rig.localize(upper[0], lower[1], time)
-        assert seen.outcome == outcomes.MOMENTS
+        assert seen.outcome == Reason.MOMENTS
         assert seen.localization.pose is None
         assert "were they taken at one moment" in seen.localization.explanation

@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
-from course_lib.beyond.look_alikes.confidence import AMBIGUOUS, NOTHING_AGREES, TOO_FEW_INLIERS
-from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis, rotations
+from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis
 from course_lib.beyond.several_views import CarriedPose, Motion, SemanticTracker, carried_on, fused
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
+from course_lib.spherical_stereo.outcomes import Reason
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, rotation_2d
 from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, SYMMETRIC, observed
 
 SURE = np.diag([0.02, 0.02, 0.02]) ** 2
 
 
 def motion(start, end, covariance=SURE):
-    forward, left = rotations(np.array(start[2])).T @ (end[:2] - start[:2])
+    forward, left = rotation_2d(start[2]).T @ (end[:2] - start[:2])
     return Motion(forward, left, wrap_angle(end[2] - start[2]), covariance)
 
 
@@ -53,7 +53,7 @@ def test_odometry_resolves_what_the_last_view_alone_or_two_objects_cannot():
     tracker, two = SemanticTracker(PLANTED), observed(PLANTED, WALK[1], which=(3, 5))
     tracker.step(observed(PLANTED, WALK[0]))
     assert near(tracker.step(two, motion(WALK[0], WALK[1])).pose, WALK[1])
-    assert SemanticTracker(PLANTED).step(two).reason == TOO_FEW_INLIERS
+    assert SemanticTracker(PLANTED).step(two).reason == Reason.TOO_FEW_AGREE
 
 
 def test_a_rig_carried_away_is_found_again_nothing_makes_it_no_surer_and_a_symmetric_room_stays_two_rooms():
@@ -67,10 +67,10 @@ def test_a_rig_carried_away_is_found_again_nothing_makes_it_no_surer_and_a_symme
     second = tracker.step([], motion(WALK[0], WALK[1]))
     assert near(second.pose, WALK[1])
     assert np.trace(second.covariance) > np.trace(first.covariance)
-    assert SemanticTracker(PLANTED).step([]).reason == NOTHING_AGREES
+    assert SemanticTracker(PLANTED).step([]).reason == Reason.NOTHING_AGREES
     tracker = SemanticTracker(SYMMETRIC)
     for start, end in zip([None, *WALK], WALK, strict=False):
         track = tracker.step(observed(SYMMETRIC, end), None if start is None else motion(start, end))
-    assert (track.status, track.reason, track.pose) == ("unable", AMBIGUOUS, None)
+    assert (track.status, track.reason, track.pose) == ("unable", Reason.AMBIGUOUS, None)
     assert [share for _, share in track.alternatives[:2]] == pytest.approx([0.5, 0.5], abs=0.05)
     assert any(near(pose, WALK[-1]) for pose, _ in track.alternatives[:2])

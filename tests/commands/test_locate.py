@@ -7,7 +7,11 @@ import cv2
 import numpy as np
 import pytest
 
+from course_lib.spherical_stereo import panorama
+from course_lib.spherical_stereo.detection import colour
 from course_lib.spherical_stereo.detection.detector import YoloDetector
+from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.panorama import View
 from tests.spherical_stereo.stereo_scene import BASELINE, TRUE_POSE, mapped_scene
 
 
@@ -79,6 +83,22 @@ def test_no_pose_is_an_answer_and_is_drawn_too(pair, tmp_path, told, printed):
     assert (out / "locate.png").is_file()
     assert "<title>No pose: implausible</title>" in (out / "locate.html").read_text()
     assert told(*words(pair, "--paper", baseline=1.0))["status"] == "ok"
+
+
+def test_each_panorama_is_opened_and_coloured_once_on_the_way_of_a_user(pair, monkeypatch, told):
+    opened, asked = [], []
+    open_view, measure, localize = panorama.open_view, colour.mean_hue_saturation, SemanticLocalizer.localize
+    monkeypatch.setattr(
+        panorama, "open_view", lambda image, *name: opened.append(isinstance(image, View)) or open_view(image, *name)
+    )
+    monkeypatch.setattr(colour, "mean_hue_saturation", lambda *given: asked.append(given[1]) or measure(*given))
+    calls = []
+    monkeypatch.setattr(SemanticLocalizer, "localize", lambda *given: calls.append(given) or localize(*given))
+    assert told(*words(pair))["status"] == "ok"
+    assert opened.count(False) == 2, "the two images; what was opened is not opened again"
+    assert len(asked) == 10, "five objects in each"
+    ((_, upper, lower, boxes),) = calls
+    assert (upper.size, lower.size, len(boxes.upper)) == (boxes.size, boxes.size, 5)
 
 
 class Boxes:

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.recording import read_stereo_boxes
+from course_lib.spherical_stereo.drawn_boxes import read_stereo_boxes
 from tests.spherical_stereo.stereo_scene import HEIGHT, WIDTH, scene
 
 REAL_PAIR = Path(__file__).parents[3] / "shared" / "real" / "panorama_room"

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from course_lib.spherical_stereo.detection.detector import YoloDetector
-from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+from courseware.simulation.room.stereo_recording import read_stereo_recording
 
 collect_ignore_glob = [] if find_spec("embreex") else ["test_*.py"]
 DATA = Path(__file__).resolve().parents[2] / "data"

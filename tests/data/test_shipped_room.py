@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from course_lib.geometry import wrap_angle
-from course_lib.spherical_stereo.recording import read_stereo_boxes
+from course_lib.spherical_stereo.drawn_boxes import read_stereo_boxes
 from course_lib.spherical_stereo.semantic_map.association import hue_difference
 from courseware.simulation.room.experiment_room import make_experiment_room
 from courseware.simulation.room.measurement_places import CAMERA_HEIGHTS, MEASUREMENT_PLACES

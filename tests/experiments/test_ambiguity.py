@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from course_lib.beyond.look_alikes.hypotheses import rotations
+from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from courseware.experiments.ambiguity import ambiguity_map, imagined_observations
 from tests.beyond.look_alikes.look_alike_scene import PLANTED, POSE, SYMMETRIC
 
@@ -13,7 +13,7 @@ def test_imagined_observations_lie_about_their_landmarks_as_their_covariances_sa
     for _ in range(60):
         observations, shown = imagined_observations(PLANTED, POSE, rng)
         for one, landmark in zip(observations, shown, strict=True):
-            true = rotations(np.array(POSE[2])).T @ (PLANTED.positions[landmark] - POSE[:2])
+            true = rotation_2d(POSE[2]).T @ (PLANTED.positions[landmark] - POSE[:2])
             error = np.array([one.x, one.y]) - true
             normalized.append(error @ np.linalg.solve(one.covariance, error))
             assert one.label == PLANTED.labels[landmark]

@@ -7,7 +7,7 @@ import pytest
 
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.panorama import StereoRig
-from course_lib.spherical_stereo.pose.localization import UNABLE, Localization
+from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 from courseware.experiments.room import RolledPair, compare, experiment_summary, turn_summary, weighted_summary
@@ -33,7 +33,7 @@ def test_an_object_told_to_be_uncertain_moves_the_weighted_pose_less():
         Observation(one.label, one.x + off, one.y, one.hue, one.saturation, variance * np.eye(2))
         for one, off, variance in zip(MAP.landmarks, (0.5, 0.0, 0.0), (4.0, 0.01, 0.01), strict=True)
     ]
-    results = [result(LOCALIZER.localize_observations(seen)), result(Localization(None, UNABLE))]
+    results = [result(LOCALIZER.localize_observations(seen)), result(Localization())]
     alike, weighted = experiment_summary(results), weighted_summary(results, LOCALIZER)
     assert alike["correct_percent"] == weighted["correct_percent"] == 50.0
     assert alike["unable_percent"] == weighted["unable_percent"] == 50.0
@@ -62,7 +62,7 @@ def test_what_moves_and_turns_besides_is_measured():
 
 @pytest.mark.parametrize(
     "rolled",
-    [localized(-ANGLE), localized(ANGLE, labels=("sofa", "table")), Localization(None, UNABLE)],
+    [localized(-ANGLE), localized(ANGLE, labels=("sofa", "table")), Localization()],
     ids=["turned the other way", "an object less", "no pose"],
 )
 def test_what_does_not_agree(rolled):

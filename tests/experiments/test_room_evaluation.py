@@ -9,7 +9,6 @@ import pytest
 from course_lib.spherical_stereo.detection.detected_object import Detection
 from course_lib.spherical_stereo.pose.localization import Localization, PlacedObject
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from course_lib.spherical_stereo.recording import TrueObject
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from courseware.experiments.room_evaluation import (
     NO_OBJECT,
@@ -23,6 +22,7 @@ from courseware.experiments.room_evaluation import (
     true_landmarks_of,
     wrong_pairs,
 )
+from courseware.simulation.room.stereo_recording import TrueObject
 
 WIDTH = 1280
 TRUE_POSE = (1.0, 2.0, 3.1)

@@ -13,9 +13,10 @@ from course_lib.depth_mcl import SceneMap, read_sequence
 from course_lib.depth_mcl.sequence import write_sequence
 from course_lib.geometry import optical_pose
 from course_lib.spherical_stereo import SemanticMap, YoloDetector
+from course_lib.spherical_stereo.drawn_boxes import read_stereo_boxes
 from course_lib.spherical_stereo.panorama import read_panorama
-from course_lib.spherical_stereo.recording import read_stereo_boxes, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark
+from courseware.simulation.room.stereo_recording import read_stereo_recording
 from tests.spherical_stereo.detection.blob_networks import GREEN, INPUT_SIZE, RED, blob_onnx, panorama, write_darknet
 
 PICTURE = panorama(np.random.default_rng(3), (100, 50, RED), (245, 20, GREEN))
@@ -68,8 +69,8 @@ FORMATS = {
     "path on the floor": Format("sequence/path_on_floor.txt", read_depth_images),
     "TUM trajectory": Format("tum/groundtruth.txt", read_depth_images),
     "TUM images": Format("tum/depth.txt", read_depth_images),
-    "panorama, PNG": Format("panoramas/upper.png", read_panorama, "bytes"),
-    "panorama, JPEG": Format("panoramas/upper.jpg", read_panorama, "bytes"),
+    "panorama, PNG": Format("panoramas/upper.png", lambda path: read_panorama(path).image, "bytes"),
+    "panorama, JPEG": Format("panoramas/upper.jpg", lambda path: read_panorama(path).image, "bytes"),
     "stereo recording": Format("stereo/poses.json", read_stereo_images, "json"),
     "semantic map": Format("semantic/map.json", SemanticMap.load, "json"),
     "semantic map, CSV": Format("semantic/map.csv", SemanticMap.load),

@@ -1,24 +1,23 @@
 """A localization as a scene: landmarks, rays, ellipses and pose stand where the answer says."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from course_lib.spherical_stereo import SemanticLocalizer, StereoRig
+from course_lib.spherical_stereo.drawn_boxes import StereoBoxes
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from courseware.plots.location_scene import location_scene
 from courseware.plots.panorama_drawing import class_style
 from courseware.plots.scene_page import page_html
 from tests.plots.test_track_scene import of_colour
-from tests.spherical_stereo.stereo_scene import BASELINE, mapped_scene
+from tests.spherical_stereo.stereo_scene import BASELINE, boxes_of, mapped_scene
 
 UPPER, LOWER, MAP = mapped_scene()
 
 
 @pytest.fixture(scope="module")
 def found():
-    return SemanticLocalizer(StereoRig(BASELINE), MAP).localize_views(UPPER, LOWER)
+    return SemanticLocalizer(StereoRig(BASELINE), MAP).localize(UPPER, LOWER, boxes_of(UPPER, LOWER))
 
 
 def test_every_landmark_has_a_post_and_its_class(found):
@@ -49,10 +48,11 @@ def test_rays_go_from_the_pose_to_the_places_and_ellipses_lie_there(found):
 
 
 def test_a_rejected_pose_is_called_so_and_no_pose_is_said():
-    rejected = SemanticLocalizer(StereoRig(1.0), MAP).localize_views(UPPER, LOWER)
+    rejected = SemanticLocalizer(StereoRig(1.0), MAP).localize(UPPER, LOWER, boxes_of(UPPER, LOWER))
     assert rejected.pose is None
     assert "rejected pose: coloured axes" in location_scene(MAP, rejected)[1]
-    nothing = SemanticLocalizer(StereoRig(BASELINE), MAP).localize_views(replace(UPPER, detections=()), LOWER)
+    empty = StereoBoxes(UPPER.size, [], LOWER.detections)
+    nothing = SemanticLocalizer(StereoRig(BASELINE), MAP).localize(UPPER, LOWER, empty)
     plotter, words = location_scene(MAP, nothing)
     assert "no pose, no detections" in words
     assert len(page_html(plotter, "A map", words)) < 1_300_000

@@ -14,6 +14,7 @@ import cv2
 import numpy as np
 
 from course_lib.spherical_stereo.detection.detected_object import Detection
+from course_lib.spherical_stereo.drawn_boxes import StereoBoxes
 from course_lib.spherical_stereo.panorama import View, direction_to_pixel, open_view, pixel_to_direction
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
@@ -183,6 +184,11 @@ def mapped_scene() -> tuple[View, View, SemanticMap]:
     places = TRUE_POSE.apply([[one[2] * math.cos(one[1]), one[2] * math.sin(one[1])] for one in MAPPED])
     landmarks = [Landmark(one[0], *place, hue, 50.0) for one, place, hue in zip(MAPPED, places, HUES, strict=True)]
     return *views, SemanticMap(landmarks)
+
+
+def boxes_of(upper: View, lower: View) -> StereoBoxes:
+    """The detections of two views as boxes drawn by hand."""
+    return StereoBoxes(upper.size, upper.detections, lower.detections)
 
 
 class KnowingDetector:

@@ -9,19 +9,27 @@ import pytest
 from course_lib.spherical_stereo.detection.detected_object import Detection, wrapped_box
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.matching.features import PanoramaFeatures, find_features, inside_box
+from course_lib.spherical_stereo.outcomes import NoPartner, Reason
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, open_view
-from course_lib.spherical_stereo.pose import localization as outcomes
-from course_lib.spherical_stereo.pose.rigid_fit import MIRRORED, rotation_2d
+from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
-from tests.spherical_stereo.stereo_scene import BASELINE, TRUE_POSE, WIDTH, KnowingDetector, mapped_scene, seen_turned
+from tests.spherical_stereo.stereo_scene import (
+    BASELINE,
+    TRUE_POSE,
+    WIDTH,
+    KnowingDetector,
+    boxes_of,
+    mapped_scene,
+    seen_turned,
+)
 
 UPPER, LOWER, MAP = mapped_scene()
 RIG = StereoRig(BASELINE)
 
 
 def locate(upper=UPPER, lower=LOWER, semantic_map=MAP, rig=RIG, **options):
-    return SemanticLocalizer(rig, semantic_map, **options).localize_views(upper, lower)
+    return SemanticLocalizer(rig, semantic_map, **options).localize(upper, lower, boxes_of(upper, lower))
 
 
 def seen_by(image, detections=LOWER.detections):
@@ -47,7 +55,7 @@ def test_a_baseline_in_millimetres_is_named_and_one_in_other_units_is_implausibl
         StereoRig(300)
     for baseline in (3.0, 1.0, 0.05):
         found = locate(rig=StereoRig(baseline))
-        assert (found.status, found.reason, found.pose) == ("unable", outcomes.IMPLAUSIBLE, None)
+        assert (found.status, found.reason, found.pose) == ("unable", Reason.IMPLAUSIBLE, None)
         assert found.rejected_pose is not None
         assert f"{found.rms_residual:.2f} m" in found.explanation
         assert locate(rig=StereoRig(baseline), reject_implausible=False).status == "ok", "the paper's method is silent"
@@ -58,7 +66,7 @@ def test_a_lower_camera_that_is_yawed_is_named(columns):
     boxes = wrapped_box([np.add(d.box, [columns, 0, columns, 0]) for d in LOWER.detections], WIDTH)
     detections = [replace(d, box=tuple(box)) for d, box in zip(LOWER.detections, boxes, strict=True)]
     found = locate(lower=seen_by(np.roll(LOWER.image, columns, axis=1), detections))
-    assert (found.status, found.reason) == ("unable", outcomes.TURNED)
+    assert (found.status, found.reason) == ("unable", Reason.TURNED)
     assert found.turn[2] == pytest.approx(2 * math.pi * columns / WIDTH, abs=math.radians(0.3))
     assert "of yaw" in found.explanation
 
@@ -69,7 +77,7 @@ def test_a_lower_camera_that_is_yawed_is_named(columns):
 def test_a_lower_camera_that_is_tilted_by_more_than_a_little_is_named(turn_deg, is_named):
     tilted = seen_by(seen_turned(LOWER.image, np.radians(turn_deg)))
     found = locate(lower=tilted)
-    assert (found.status, found.reason) == (("unable", outcomes.TURNED) if is_named else ("ok", None))
+    assert (found.status, found.reason) == (("unable", Reason.TURNED) if is_named else ("ok", None))
     assert np.degrees(found.turn) == pytest.approx(turn_deg, abs=0.4 if is_named else 0.2)
     assert locate(lower=tilted, reject_implausible=False).turn is None, "the paper's method does not ask"
 
@@ -77,7 +85,7 @@ def test_a_lower_camera_that_is_tilted_by_more_than_a_little_is_named(turn_deg, 
 @pytest.mark.parametrize("dark", ["upper", "lower"])
 def test_a_black_frame_is_unable_and_no_exception(dark):
     found = locate(**{dark: open_view(np.zeros_like(UPPER.image))})
-    assert (found.status, found.reason) == ("unable", outcomes.BLANK)
+    assert (found.status, found.reason) == ("unable", Reason.BLANK)
     assert f"the {dark} image is black" in found.explanation
 
 
@@ -99,7 +107,7 @@ def test_an_object_at_200_metres_is_too_far_and_moves_nothing():
 def test_a_mirrored_map_gives_no_pose():
     for axis in ("x", "y"):
         mirrored = SemanticMap([replace(one, **{axis: 6.0 - getattr(one, axis)}) for one in MAP.landmarks])
-        assert locate(semantic_map=mirrored).reason in (outcomes.IMPLAUSIBLE, MIRRORED)
+        assert locate(semantic_map=mirrored).reason in (Reason.IMPLAUSIBLE, Reason.MIRRORED)
 
 
 def test_one_matched_feature_makes_no_object():
@@ -110,7 +118,7 @@ def test_one_matched_feature_makes_no_object():
     kept = ~inside | (view.features.keypoints == chair.keypoints_upper[0]).all(axis=1)
     thin = PanoramaFeatures(view.features.keypoints[kept], view.features.descriptors[kept], *view.size)
     found = locate(upper=view.replace(features=thin))
-    assert ("upper", 2, "too few matches") in found.unmatched
+    assert ("upper", 2, NoPartner.TOO_FEW_FEATURES) in found.unmatched
     paper = locate(upper=view.replace(features=thin), reject_implausible=False)
     assert {m.upper: m.n_matches for m in paper.matches}[2] == 1
 
@@ -130,12 +138,12 @@ def test_a_far_outlier_is_implausible_and_a_small_one_is_not(weighted_fit):
     localizer = SemanticLocalizer(RIG, MAP, weighted_fit=weighted_fit)
     assert localizer.localize_observations(observations((0.3, 0.0))).status == "ok"
     found = localizer.localize_observations(observations((0.0, 3.0)))
-    assert (found.status, found.reason, found.covariance) == ("unable", outcomes.IMPLAUSIBLE, None)
+    assert (found.status, found.reason, found.covariance) == ("unable", Reason.IMPLAUSIBLE, None)
     # Two look-alikes that were exchanged are implausible too.
     swapped = MAP.hues[[1, 0, 2, 3, 4]]
     found = localizer.localize_observations(observations(hues=swapped))
     assert set(found.used_pairs) == {(0, 1), (1, 0), (2, 2), (3, 3), (4, 4)}
-    assert found.reason == outcomes.IMPLAUSIBLE
+    assert found.reason == Reason.IMPLAUSIBLE
 
 
 def test_the_map_is_asked_for_the_colours_of_the_upper_image():

@@ -13,11 +13,12 @@ from hypothesis import strategies as st
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo import Noise, YoloDetector, mean_hue_saturation
 from course_lib.spherical_stereo.detection.detected_object import Detection, DetectionError, wrapped_box
+from course_lib.spherical_stereo.drawn_boxes import StereoBoxes
 from course_lib.spherical_stereo.localizer import LocalizerError, SemanticLocalizer
 from course_lib.spherical_stereo.matching.object_matching import ObjectMatch
+from course_lib.spherical_stereo.outcomes import Reason
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, direction_to_pixel
-from course_lib.spherical_stereo.pose import localization as outcomes
-from course_lib.spherical_stereo.pose.rigid_fit import COINCIDENT, MIRRORED, TOO_FEW_PAIRS, Pose2D, rotation_2d
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import AssociationError, Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 from tests.spherical_stereo.stereo_scene import BASELINE, ROOM, KnowingDetector, mapped_scene, pair_from
@@ -123,15 +124,15 @@ WITH_A_CHAIR = SemanticMap([Landmark("chair", 1, 1, 30, 20), Landmark("cabinet",
 @pytest.mark.parametrize(
     ("reason", "n_upper", "n_lower", "matches", "semantic_map"),
     [
-        (outcomes.NO_DETECTIONS, 0, 0, [], ROOM),
-        (outcomes.NO_DETECTIONS, 5, 0, [], ROOM),
-        (outcomes.ONE_DETECTION, 5, 1, [(0, 0)], ROOM),
-        (outcomes.TOO_FEW_MATCHED, 5, 5, [], ROOM),
-        (outcomes.TOO_FEW_MATCHED, 5, 5, [(3, 3)], ROOM),
-        (outcomes.UNMAPPED_ONLY, 5, 5, ALL, WITHOUT_ANY),
-        (TOO_FEW_PAIRS, 5, 5, ALL, WITH_A_CHAIR),
-        (TOO_FEW_PAIRS, 5, 5, ALL[:2], TWO_CLASSES),  # two sofas are seen: the second is left with the chair
-        (MIRRORED, 5, 5, ALL, MIRRORED_ROOM),
+        (Reason.NO_DETECTIONS, 0, 0, [], ROOM),
+        (Reason.NO_DETECTIONS, 5, 0, [], ROOM),
+        (Reason.ONE_DETECTION, 5, 1, [(0, 0)], ROOM),
+        (Reason.TOO_FEW_IN_BOTH, 5, 5, [], ROOM),
+        (Reason.TOO_FEW_IN_BOTH, 5, 5, [(3, 3)], ROOM),
+        (Reason.UNMAPPED_ONLY, 5, 5, ALL, WITHOUT_ANY),
+        (Reason.TOO_FEW_PAIRS, 5, 5, ALL, WITH_A_CHAIR),
+        (Reason.TOO_FEW_PAIRS, 5, 5, ALL[:2], TWO_CLASSES),  # two sofas are seen: the second is left with the chair
+        (Reason.MIRRORED, 5, 5, ALL, MIRRORED_ROOM),
     ],
 )
 def test_the_first_step_that_leaves_too_little_is_the_reason(reason, n_upper, n_lower, matches, semantic_map):
@@ -141,11 +142,11 @@ def test_the_first_step_that_leaves_too_little_is_the_reason(reason, n_upper, n_
 
 
 def test_images_exchanged_or_given_twice_and_two_objects_at_one_place_are_reasons():
-    assert localize(LOWER, UPPER, ALL).reason == outcomes.SWAPPED
-    assert localize(*views(POSE, STACKED, [0.4, 0.9]), semantic_map=STACKED).reason == COINCIDENT
+    assert localize(LOWER, UPPER, ALL).reason == Reason.SWAPPED
+    assert localize(*views(POSE, STACKED, [0.4, 0.9]), semantic_map=STACKED).reason == Reason.COINCIDENT
     found = localize(UPPER, UPPER, ALL)
     assert {one.outcome for one in found.objects} == {"parallel"}
-    assert (found.reason, "sofa: parallel" in found.explanation) == (outcomes.TOO_FEW_PLACED, True)
+    assert (found.reason, "sofa: parallel" in found.explanation) == (Reason.TOO_FEW_DISTANCES, True)
 
 
 PLAIN = SemanticLocalizer(RIG, ROOM)
@@ -199,6 +200,17 @@ def detected(found):
     return SemanticLocalizer(RIG, ROOM, SimpleNamespace(detect=lambda image: found)).localize(IMAGE, IMAGE)
 
 
+def test_boxes_drawn_by_hand_take_the_place_of_a_detector():
+    *images, upper, lower = pair_from(0.0, 0.0)
+    semantic_map, size = mapped_scene()[2], images[0].shape[1::-1]
+    by_detector = SemanticLocalizer(StereoRig(BASELINE), semantic_map, KnowingDetector((*images, upper, lower)))
+    by_hand = SemanticLocalizer(StereoRig(BASELINE), semantic_map)
+    found = by_hand.localize(*images, StereoBoxes(size, upper, lower))
+    assert found.pose == by_detector.localize(*images).pose
+    with pytest.raises(DetectionError, match="the boxes were drawn on images of"):
+        by_hand.localize(*images, StereoBoxes((64, 32), upper, lower))
+
+
 def test_a_detector_of_ones_own_need_not_know_colours_which_are_measured_in_the_images():
     *images, upper, lower = pair_from(0.0, 0.0)
     plain = KnowingDetector((*images, [bare(one) for one in upper], [bare(one) for one in lower]))
@@ -212,7 +224,7 @@ def test_a_detector_of_ones_own_need_not_know_colours_which_are_measured_in_the_
 def test_the_noise_of_the_detector_can_be_set():
     rough, exact = (localize(*views(POSE), noise=Noise(sigma, 0.01, 0.01)) for sigma in (0.01, 0.002))
     assert np.trace(exact.covariance) < 0.1 * np.trace(rough.covariance)
-    assert localize(*views(POSE), noise=Noise(0.1)).reason == outcomes.TOO_FEW_PLACED  # beyond `max_range`, 2.1 m
+    assert localize(*views(POSE), noise=Noise(0.1)).reason == Reason.TOO_FEW_DISTANCES  # beyond `max_range`, 2.1 m
 
 
 def given(*values):

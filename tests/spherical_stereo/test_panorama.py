@@ -83,4 +83,4 @@ def test_a_panorama_file_is_read_without_its_alpha_and_another_one_named(tmp_pat
     for name, says in (("missing", "is missing"), ("square", "twice as wide")):
         with pytest.raises(panorama.PanoramaError, match=rf"{name}\.png.*{says}"):
             panorama.read_panorama(tmp_path / f"{name}.png")
-    np.testing.assert_array_equal(panorama.read_panorama(tmp_path / "a.png"), image[..., :3])
+    np.testing.assert_array_equal(panorama.read_panorama(tmp_path / "a.png").image, image[..., :3])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from course_lib.spherical_stereo.detection.detected_object import Detection
-from course_lib.spherical_stereo.recording import TrueObject
 from courseware.experiments.room_evaluation import Matching
+from courseware.simulation.room.stereo_recording import TrueObject
 from tools import detector_evaluation
 from tools.detector_evaluation import (
     DetectionScoreError,

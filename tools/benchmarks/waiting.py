@@ -48,9 +48,9 @@ def room_seconds(poses: int) -> dict[str, float]:
     begun = time.perf_counter()
     from course_lib.spherical_stereo.detection.detector import YoloDetector
     from course_lib.spherical_stereo.localizer import SemanticLocalizer
-    from course_lib.spherical_stereo.recording import read_stereo_recording
     from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
     from courseware.experiments.room import localize_pair
+    from courseware.simulation.room.stereo_recording import read_stereo_recording
 
     recording = read_stereo_recording(data_path("room/experiment_1"))
     semantic_map = SemanticMap.load(data_path("room/semantic_map.json"))

@@ -9,8 +9,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from course_lib.spherical_stereo.recording import true_object
 from courseware.experiments.room_evaluation import counts_as_object
+from courseware.simulation.room.stereo_recording import true_object
 from tools.training_images import read_image_list
 
 # Width of a whole panorama in memory: a 1280 x 512 network input is one and a quarter panorama, 1.25 * 1024 columns.

@@ -7,19 +7,15 @@ from scipy.stats import chi2
 
 from course_lib.beyond.look_alikes.evidence import CLUTTER_DENSITY, FAR_RANGE, Evidence
 from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis
+from course_lib.spherical_stereo.outcomes import Reason
+from course_lib.spherical_stereo.pose.rigid_fit import DOUBT
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 # Share of the evidence that is believed, because errors such as a wrong baseline are in all observations at once.
 TEMPER = 0.5
 MIN_INLIERS = 3  # Matched observations that a pose needs, because two always fit.
-DOUBT = 0.001  # Share of the right poses whose residuals may be called too large, if the covariances are exact.
 MIN_CONFIDENCE = 0.8  # A pose with a smaller confidence is not given out.
 MARGIN = 1.0  # Metres that a room reaches beyond its landmarks, if the map has no walls (chosen).
-
-# Reasons why no pose is given out.
-NOTHING_AGREES = "no two objects agree on a pose"
-TOO_FEW_INLIERS = "fewer than three objects agree on a pose"
-AMBIGUOUS = "ambiguous"  # another pose, or none at all, explains what is seen nearly as well
 
 
 def score_of_nothing(semantic_map: SemanticMap) -> float:
@@ -56,10 +52,10 @@ def confidence_of(best: PoseHypothesis, evidence: Evidence = Evidence()) -> floa
     return best.share * plausibility(best) if len(best.pairs) >= MIN_INLIERS else 0.0
 
 
-def why_unable(n_poses: int, n_matches: int, confidence: float, min_confidence: float) -> str | None:
+def why_unable(n_poses: int, n_matches: int, confidence: float, min_confidence: float) -> Reason | None:
     """Return the reason why the best of n poses, which has n matches, is not given out; None if it is."""
     if confidence >= min_confidence and n_poses:
         return None
     if not n_poses:
-        return NOTHING_AGREES
-    return TOO_FEW_INLIERS if n_matches < MIN_INLIERS else AMBIGUOUS
+        return Reason.NOTHING_AGREES
+    return Reason.TOO_FEW_AGREE if n_matches < MIN_INLIERS else Reason.AMBIGUOUS

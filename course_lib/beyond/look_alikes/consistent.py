@@ -33,7 +33,7 @@ from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
 SAME_POSE_M, SAME_POSE_RAD = 0.5, np.deg2rad(10.0)  # metres, radians: two poses that are nearer are one answer
 SHORT_LIST = 30  # Distinct poses that are assigned and refitted.
-ALTERNATIVES = 3  # Poses that an answer keeps beside the best.
+ALTERNATIVES = 3  # Poses that an answer keeps besides the best one.
 ROUNDS = 2  # Assignments and refits in turn. The second changes few pairs, a third changed none that mattered.
 
 
@@ -126,7 +126,7 @@ def assign(cost: np.ndarray, one_to_one: bool = True) -> tuple[tuple[int, int], 
 
 
 def explain(scene: Scene, poses: np.ndarray, covariances: np.ndarray, evidence: Evidence) -> list[PoseHypothesis]:
-    """Return what each pose `(h, 3)` with its covariance `(h, 3, 3)` makes of the scene: assigned, refitted, scored.
+    """Return a hypothesis for each pose `(h, 3)` with its covariance `(h, 3, 3)`: assigned, refitted and scored.
 
     A pose that explains fewer than two observations is left out.
     """
@@ -138,7 +138,7 @@ def explain(scene: Scene, poses: np.ndarray, covariances: np.ndarray, evidence: 
         if not enough:
             return []
         poses, spread = refit(scene, poses[enough], [pairs[k] for k in enough])
-    # A refitted pose has no error of its own: its matches have made it, and their noise is counted already.
+    # A refitted pose has no error of its own, because it comes from its matches, whose noise is counted already.
     cost, base, chance = match_costs(scene, poses, None if evidence.refit else spread, evidence)
     squared, _ = place_distances(scene, poses, None if evidence.refit else spread)
     explained = []

@@ -1,4 +1,4 @@
-"""How well h poses explain what is seen and what is not: each kind of evidence a function.
+"""How well h poses explain the observations and the missing ones. Each kind of evidence is a function.
 
 Costs are negative logarithms of probabilities, in nats, so that they add up: a cost of 3 is odds of 20 to 1.
 """

@@ -10,8 +10,7 @@ import numpy as np
 
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.detection.detected_object import canonical_label
-from course_lib.spherical_stereo.pose.rigid_fit import Pose2D
-from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d as rotations
+from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 
@@ -19,6 +18,8 @@ DISTANCE_GATE = 3.5  # standard deviations by which two distances may differ and
 MIN_DISTANCE = 0.5  # Metres between two landmarks, and between two observations. Nearer ones tell no useful heading.
 UNKNOWN_SIGMA = 0.3  # Metres, standard deviation of a position without a covariance (chosen).
 MAP_SIGMA = 0.02  # metres, standard deviation of a landmark's coordinates
+# Steps for every pose of two matches: thousands at once, of which the best are refitted. On P2's practice rooms nine of
+# ten poses near the true one are then within 0.1 mm and 1e-4 radians of where forty steps end.
 GAUSS_NEWTON_STEPS = 4
 
 
@@ -95,7 +96,7 @@ def pair_poses(scene: Scene, gate: float = DISTANCE_GATE) -> PairPoses:
     places, targets = scene.places[observations], scene.semantic_map.positions[landmarks]
     seen, true = places[:, 1] - places[:, 0], targets[:, 1] - targets[:, 0]
     theta = np.arctan2(true[:, 1], true[:, 0]) - np.arctan2(seen[:, 1], seen[:, 0])
-    middle = targets.mean(axis=1) - (rotations(theta) @ places.mean(axis=1)[..., None])[..., 0]
+    middle = targets.mean(axis=1) - (rotation_2d(theta) @ places.mean(axis=1)[..., None])[..., 0]
     start = np.column_stack([middle, theta])
     poses, covariances = fit_poses(start, places, targets, scene.covariances[observations])
     return PairPoses(poses, covariances, observations, landmarks)
@@ -126,7 +127,7 @@ def fit_poses(
 
 def seen_from(poses: np.ndarray, places: np.ndarray, covariances: np.ndarray) -> tuple[np.ndarray, ...]:
     """Return places `(h, k, 2)` on the map, their derivative by the pose `(h, k, 2, 3)`, and R C R^T `(h, k, 2, 2)`."""
-    rotation = rotations(poses[:, 2])[:, None]
+    rotation = rotation_2d(poses[:, 2])[:, None]
     turned = (rotation @ places[..., None])[..., 0]
     jacobians = np.zeros((*turned.shape, 3))
     jacobians[..., 0, 0] = jacobians[..., 1, 1] = 1.0

@@ -47,13 +47,15 @@ def mean_hue_saturation(
 
 
 def coloured(view: View) -> View:
-    """Return a panorama whose detections have a colour: measured in its image if the detector gave none."""
+    """Return a panorama whose detections all have a colour. A missing one is measured in its image."""
     found = list(view.detections)
     for i, one in enumerate(found):
         if np.isnan(getattr(one, "saturation", np.nan)):
             if view.image is None:
-                told = f"detection {i}, {one.label}, has no colour: give hue and saturation (mean_hue_saturation)"
-                raise DetectionError(f"{told}, or the images, in which they are measured")
+                raise DetectionError(
+                    f"detection {i}, {one.label}, has no colour: give hue and saturation (mean_hue_saturation), or the "
+                    "images, in which they are measured"
+                )
             colour = mean_hue_saturation(view.image, one.box)
             found[i] = Detection(one.label, getattr(one, "score", 1.0), one.box, *colour)
     return view.replace(detections=found)

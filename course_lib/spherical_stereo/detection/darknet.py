@@ -184,9 +184,9 @@ def corners(rows: np.ndarray) -> np.ndarray:
 class Network:
     """A network of OpenCV that runs one blob at a time. It is pickled as its arguments."""
 
-    def __init__(self, net: cv2.dnn.Net, told: str, input_size: tuple[int, int], *arguments: object) -> None:
-        """Run the network once, so that what does not fit is found now. told: the files, for messages."""
-        self._net, self._told, self.input_size, self._arguments = net, told, input_size, arguments
+    def __init__(self, net: cv2.dnn.Net, files: str, input_size: tuple[int, int], *arguments: object) -> None:
+        """Run the network once, so that a misfit is found now. files: their names, for messages."""
+        self._net, self._files, self.input_size, self._arguments = net, files, input_size, arguments
         self._turn = threading.Lock()
         self.infer(np.zeros((1, 3, input_size[1], input_size[0]), dtype=np.float32))
 
@@ -202,13 +202,13 @@ class Network:
                 outputs = [np.array(out) for out in self._net.forward(self._net.getUnconnectedOutLayersNames())]
         except cv2.error as error:
             raise DetectorError(
-                f"OpenCV cannot run {self._told} at an input of {blob.shape[3]} x {blob.shape[2]} ({error.err}). "
+                f"OpenCV cannot run {self._files} at an input of {blob.shape[3]} x {blob.shape[2]} ({error.err}). "
                 "YOLOv4 takes multiples of 32"
             ) from error
         boxes, scores = self._decode(outputs)
         # A box may be infinitely wide, as an untrained network's are: it is cut at the image's edges.
         if np.isnan(boxes).any() or not np.isfinite(scores).all():
-            raise DetectorError(f"the network {self._told} gives boxes or scores that are NaN: is its file damaged?")
+            raise DetectorError(f"the network {self._files} gives boxes or scores that are NaN: is its file damaged?")
         return boxes, scores
 
 
@@ -239,12 +239,12 @@ class DarknetNetwork(Network):
         super().__init__(net, f"{cfg} with {weights}", (width, height), cfg, weights, size)
 
     def _decode(self, outputs: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        """Rows are cx, cy, w, h as shares of the input, objectness, and class scores times objectness."""
+        """Return boxes and scores of rows [cx, cy, w, h as shares of the input, objectness, class scores times it]."""
         for output in outputs:
             if output.shape[1:] != (5 + self.n_classes,):  # OpenCV makes an output of what no later layer takes
                 shape = output.shape
                 raise DetectorError(
-                    f"the network {self._told} has an output of shape {shape} that no [yolo] layer gives"
+                    f"the network {self._files} has an output of shape {shape} that no [yolo] layer gives"
                 )
         rows = np.concatenate(outputs)
         return corners(rows) * np.tile(self.input_size, 2), rows[:, 5:]

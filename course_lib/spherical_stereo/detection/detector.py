@@ -31,8 +31,7 @@ class Detector(Protocol):
 
 def find_objects(view: View, detector: Detector) -> View:
     """Return the panorama with what a detector finds in it, in colour."""
-    # Our own detector takes the view, which was checked already; any other takes the image.
-    found = detector.detect(view if isinstance(detector, YoloDetector) else view.image)
+    found = detector.detect(view.image)
     if not (isinstance(found, Sequence) and all(isinstance(one, Detection) for one in found)):
         raise DetectionError(f"detect must return a list of Detection(label, score, box); got {found!r}"[:300])
     return coloured(view.replace(detections=found))
@@ -111,7 +110,7 @@ class YoloDetector:
         """Return (width, height) of the network's input, pixels."""
         return self._network.input_size
 
-    def detect(self, image_bgr: np.ndarray | View) -> list[Detection]:
+    def detect(self, image_bgr: np.ndarray) -> list[Detection]:
         """Return every object of a panorama once, the greatest score first.
 
         image_bgr: (H, 2 H, 3) uint8 of any size. Boxes have 0 <= u_min < W, and u_max > W across the seam.

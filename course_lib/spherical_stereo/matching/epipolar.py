@@ -8,14 +8,11 @@ With both cameras on one vertical axis, both see a point at one azimuth, and the
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from course_lib.spherical_stereo.matching.features import PanoramaFeatures
 from course_lib.spherical_stereo.panorama import azimuth_difference
-
-if TYPE_CHECKING:
-    from course_lib.spherical_stereo.matching.features import PanoramaFeatures
 
 # Radians on the sphere by which a match may miss its epipolar half-circle: 3 columns at 1280 (chosen: AKAZE's own noise
 # is about one column, and a lower camera turned by half a degree is still let through).

@@ -12,19 +12,13 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.spherical_stereo.detection.detected_object import DetectionError, boxes_on, canonical_label
-from course_lib.spherical_stereo.matching import features
+from course_lib.spherical_stereo.matching.alignment import Alignment, camera_alignment, check_not_swapped
 from course_lib.spherical_stereo.matching.epipolar import EpipolarPairs, allowed_by_rig, best_pairs, epipolar_pairs
-from course_lib.spherical_stereo.matching.features import Alignment, check_not_swapped, find_features
+from course_lib.spherical_stereo.matching.features import find_features, inside_box
+from course_lib.spherical_stereo.outcomes import NoPartner
 from course_lib.spherical_stereo.panorama import StereoRig, View, open_pair
 
 MIN_FEATURES = 3  # matched features that make one object; one alone may be an accident (the paper has no number)
-
-# Reasons why an object has no partner.
-CLASS_NOT_IN_OTHER = "class not in the other image"
-NO_MATCHES = "no matches"  # no feature in common with any object of its class
-TOO_FEW = "too few matches"  # fewer in common than were asked for
-TIE = "tie"  # two partners with equally many matches
-PARTNER_TAKEN = "partner taken"  # all with which it shares features went to better ones
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +38,11 @@ class ObjectMatch:
 
 
 class Unmatched(NamedTuple):
-    """A detection without partner: side ("upper" or "lower"), its index there, and one of the reasons above."""
+    """A detection without a partner in the other image."""
 
-    side: str
-    index: int
-    reason: str
+    side: str  # "upper" or "lower"
+    index: int  # among the detections of its side
+    reason: NoPartner
 
 
 class StereoMatching(NamedTuple):
@@ -66,7 +60,7 @@ def match_objects(
     lower_detections: Sequence,
     rig: StereoRig,
 ) -> list[ObjectMatch]:
-    """Return the objects seen in both images. `match_views` says also what is left over, and why.
+    """Return the objects seen in both images. `match_views` also returns the detections left over, and why.
 
     Images: uint8 BGR `(H, W, 3)`, W = 2 H, one size. Detections: anything with `label` and `box` (edge coordinates).
     Raises `PanoramaError` as `open_pair` does, and what `match_views` raises. Source: paper 2, section 2.3.
@@ -84,7 +78,6 @@ def match_views(
     min_features: how many matched features make one object. check_alignment: match nothing if the cameras are turned or
     the images of different moments. The paper asks neither. Source: paper 2, section 2.3.
     """
-    open_pair(upper, lower)
     boxes = boxes_on(upper, "upper"), boxes_on(lower, "lower")
     labels = [[canonical_label(d.label) for d in view.detections] for view in (upper, lower)]
     counts = np.zeros((len(boxes[0]), len(boxes[1])), dtype=int)
@@ -93,13 +86,13 @@ def match_views(
     if counts.size:  # finding features takes a quarter of a second, and without two objects nobody uses them
         upper, lower = find_features(upper), find_features(lower)
         if check_alignment:
-            alignment = features.camera_alignment(upper.features, lower.features)
+            alignment = camera_alignment(upper.features, lower.features)
             if not (alignment.of_one_moment and alignment.is_upright):
                 return StereoMatching([], [], alignment)
         pairs = epipolar_pairs(upper.features, lower.features)
         check_not_swapped(best_pairs(pairs).disparity)
         in_upper, in_lower = (
-            [features.inside_box(view.features.keypoints, box, view.width)[index] for box in of_view]
+            [inside_box(view.features.keypoints, box, view.width)[index] for box in of_view]
             for view, of_view, index in ((upper, boxes[0], pairs.upper), (lower, boxes[1], pairs.lower))
         )
         for i, j in np.ndindex(counts.shape):
@@ -118,13 +111,13 @@ def match_views(
         most = counts.max(axis=1 - side, initial=0)
         for index in sorted(set(range(len(labels[side]))) - {pair[side] for pair in chosen}):
             if labels[side][index] not in labels[1 - side]:
-                reason = CLASS_NOT_IN_OTHER
+                reason = NoPartner.CLASS_NOT_IN_OTHER
             elif index in tied[side]:
-                reason = TIE
+                reason = NoPartner.TIE
             elif most[index] < min_features:
-                reason = TOO_FEW if most[index] else NO_MATCHES
+                reason = NoPartner.TOO_FEW_FEATURES if most[index] else NoPartner.NO_MATCHES
             else:
-                reason = PARTNER_TAKEN
+                reason = NoPartner.PARTNER_TAKEN
             unmatched.append(Unmatched(name, index, reason))
     return StereoMatching(matches, unmatched, alignment)
 

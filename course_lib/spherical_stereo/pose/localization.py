@@ -4,32 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from course_lib.spherical_stereo.outcomes import ObjectOutcome, Reason, Status
 from course_lib.spherical_stereo.panorama import View
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, Residuals
-from course_lib.spherical_stereo.ranging.triangulation import OK as OK
 from course_lib.spherical_stereo.semantic_map.association import Association, Observation
-
-Status = Literal["ok", "unable"]
-UNABLE: Status = "unable"
-
-# Reasons why there is no pose. None of them is a mistake of the caller's. The fit's own are in `rigid_fit`.
-BLANK = "blank image"
-NO_DETECTIONS = "no detections"
-ONE_DETECTION = "one detection"
-TURNED = "cameras turned against each other"
-MOMENTS = "images of different moments"
-TOO_FEW_MATCHED = "fewer than two objects in both images"
-SWAPPED = "images seem swapped"
-TOO_FEW_PLACED = "fewer than two objects with a distance"
-UNMAPPED_ONLY = "only unmapped classes"
-IMPLAUSIBLE = "implausible"
-
-# An outcome of an object beside those of `ranging`.
-UNMAPPED = "class not on the map"
 
 
 class PlacedObject(NamedTuple):
@@ -38,7 +20,7 @@ class PlacedObject(NamedTuple):
     upper: int  # index of its detection
     lower: int
     label: str
-    outcome: str  # "ok", or why there is no position (`ObjectPosition`)
+    outcome: ObjectOutcome
     position: np.ndarray  # X = d x_hat `(3,)`, metres, body frame, origin at the upper camera; NaN without a position
     observation: int | None  # its index among the observations, if it is one
 
@@ -48,8 +30,8 @@ class Localization:
     """Result of `SemanticLocalizer`: the record that walks through its steps, each of which fills in a part."""
 
     pose: Pose2D | None = None  # s = [x, y, theta], or None.
-    status: Status = UNABLE  # "ok" or "unable".
-    reason: str | None = None  # Why there is no pose, one of the names above; None if there is one.
+    status: Status = Status.UNABLE
+    reason: Reason | None = None  # Why there is no pose; None if there is one.
     explanation: str = ""  # The reason in a sentence, with its numbers.
     matches: Sequence = ()  # 2.3: objects seen in both images, as given or found.
     covariance: np.ndarray | None = None  # 2.6: `(3, 3)` of [x, y, theta], metres and radians, squared
@@ -64,8 +46,8 @@ class Localization:
     rejected_pose: Pose2D | None = None  # The pose that was fitted, if the reason is "implausible"; None otherwise.
     turn: np.ndarray | None = None  # `(3,)` radians about x, y, z: of the lower camera against the upper one
 
-    def unable(self, reason: str, explanation: str, **found: Any) -> Localization:
-        """Return the same with a reason why there is no pose, unless an earlier step gave one."""
+    def unable(self, reason: Reason, explanation: str, **found: Any) -> Localization:
+        """Return the same with a reason why there is no pose, unless an earlier step found one."""
         if self.reason is not None:
             return replace(self, **found)
         return replace(self, reason=reason, explanation=explanation, **found)

@@ -13,13 +13,13 @@ import numpy as np
 
 from course_lib.spherical_stereo import panorama
 from course_lib.spherical_stereo.detection.detected_object import DetectionError, box_centre, canonical_label
+from course_lib.spherical_stereo.outcomes import ObjectOutcome
 from course_lib.spherical_stereo.panorama import StereoRig, View, direction_from_angles, pixel_to_direction
 from course_lib.spherical_stereo.ranging import triangulation
-from course_lib.spherical_stereo.ranging.triangulation import OK, PARALLEL, triangulate
+from course_lib.spherical_stereo.ranging.triangulation import triangulate
 
 Distance = Literal["box_centre", "disparity"]
 DISTANCES: tuple[Distance, ...] = ("box_centre", "disparity")
-TOO_FAR, TOO_FEW_MATCHES = "too far", "too few matches"  # Outcomes beside those of the triangulation.
 MIN_MATCHES = 3  # With fewer matches a median says nothing about its own spread.
 _NORMAL_OVER_MAD = 1.4826  # standard deviation of a normal distribution over its median absolute deviation
 _MEDIAN_OVER_MEAN = 1.2533  # standard deviation of the median over that of the mean, of normal numbers: sqrt(pi / 2)
@@ -36,7 +36,7 @@ class Noise(NamedTuple):
 class ObjectPosition(NamedTuple):
     """Position of one object, body frame with the origin at the upper camera. NaN unless the outcome is "ok"."""
 
-    outcome: str  # "ok", "parallel", "diverging", "azimuth gap", "too few matches" or "too far".
+    outcome: ObjectOutcome
     position: np.ndarray = np.full(3, np.nan)  # X `(3,)`, metres
     covariance: np.ndarray = np.full((2, 2), np.nan)  # of its horizontal part, square metres
 
@@ -55,7 +55,7 @@ class ObjectPosition(NamedTuple):
 class DisparityDistance(NamedTuple):
     """Horizontal range of one object from its matched features. NaN unless the outcome is "ok"."""
 
-    outcome: str  # "ok", "too few matches", or "parallel"
+    outcome: ObjectOutcome  # OK, TOO_FEW_DISPARITIES or PARALLEL
     horizontal_range: float = float("nan")  # metres from the rig's axis, the median over the matches
     sigma: float = float("nan")  # metres, standard deviation of the median
 
@@ -86,14 +86,14 @@ def disparity_distance(match, width: int, height: int, baseline: float) -> Dispa
     _, lower = panorama.azimuth_elevation_of_pixel(match.keypoints_lower, width, height)
     slope = np.tan(lower) - np.tan(upper)
     if len(slope) < MIN_MATCHES:
-        return DisparityDistance(TOO_FEW_MATCHES)
+        return DisparityDistance(ObjectOutcome.TOO_FEW_DISPARITIES)
     middle = float(np.median(slope))
     if middle <= triangulation.PARALLEL_TOLERANCE:
-        return DisparityDistance(PARALLEL)
+        return DisparityDistance(ObjectOutcome.PARALLEL)
     deviation = _NORMAL_OVER_MAD * float(np.median(np.abs(slope - middle)))
     # d rho = rho^2 / baseline d slope, as in the covariance of the triangulation.
     spread = baseline / middle**2 * deviation
-    return DisparityDistance(OK, baseline / middle, _MEDIAN_OVER_MEAN * spread / len(slope) ** 0.5)
+    return DisparityDistance(ObjectOutcome.OK, baseline / middle, _MEDIAN_OVER_MEAN * spread / len(slope) ** 0.5)
 
 
 def position_objects(
@@ -121,7 +121,7 @@ def position_objects(
     else:
         from_lower = pixel_to_direction(box_centre([lower.detections[j].box for _, j in pairs]), *lower.size)
         found = _from_box_centres(from_upper, from_lower, rig.baseline, noise)
-    return [ObjectPosition(TOO_FAR) if one.horizontal_range_m > furthest else one for one in found]
+    return [ObjectPosition(ObjectOutcome.TOO_FAR) if one.horizontal_range_m > furthest else one for one in found]
 
 
 def measure_objects(
@@ -143,14 +143,14 @@ def measure_objects(
 def _from_box_centres(from_upper, from_lower, baseline: float, noise: Noise) -> list[ObjectPosition]:
     """Return the positions of directions `(n, 3)`, all that have one at once."""
     outcomes = triangulation.triangulation_outcome(from_upper, from_lower)
-    found = [ObjectPosition(str(outcome)) for outcome in outcomes]
-    ok = np.flatnonzero(outcomes == OK)
+    found = [ObjectPosition(ObjectOutcome(outcome)) for outcome in outcomes]
+    ok = np.flatnonzero(outcomes == ObjectOutcome.OK)
     directions = from_upper[ok], from_lower[ok]
     positions = triangulate(*directions, baseline)[:, None] * directions[0]
     sigmas = noise.box_centre, noise.box_centre
     of_angles = triangulation.triangulation_covariance(*directions, baseline, *sigmas)
     for i, position, covariance in zip(ok, positions, of_angles, strict=True):
-        found[i] = ObjectPosition(OK, position, covariance[:2, :2] + noise.centroid**2 * np.eye(2))
+        found[i] = ObjectPosition(ObjectOutcome.OK, position, covariance[:2, :2] + noise.centroid**2 * np.eye(2))
     return found
 
 
@@ -159,7 +159,7 @@ def _from_features(match, from_upper: np.ndarray, baseline: float, size, noise: 
     if not hasattr(match, "keypoints_upper"):
         raise DetectionError('distance="disparity" needs ObjectMatch with its features, not a pair of indices')
     measured = disparity_distance(match, *size, baseline)
-    if measured.outcome != OK:
+    if measured.outcome != ObjectOutcome.OK:
         return ObjectPosition(measured.outcome)
     azimuth, elevation = panorama.azimuth_elevation(from_upper)
     along = direction_from_angles(azimuth, 0.0)[:2]
@@ -168,4 +168,4 @@ def _from_features(match, from_upper: np.ndarray, baseline: float, size, noise: 
     variance_across = (measured.horizontal_range * noise.box_centre) ** 2 + noise.centroid**2
     covariance = variance_along * np.outer(along, along) + variance_across * np.outer(across, across)
     position = measured.horizontal_range / np.cos(elevation)[..., None] * direction_from_angles(azimuth, elevation)
-    return ObjectPosition(OK, position, covariance)
+    return ObjectPosition(ObjectOutcome.OK, position, covariance)

@@ -8,20 +8,20 @@ from the elevations, the azimuth from the upper camera.
 import numpy as np
 
 from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
+from course_lib.spherical_stereo.outcomes import ObjectOutcome
 from course_lib.spherical_stereo.panorama import PanoramaError, StereoRig, azimuth_elevation, direction_from_angles
 
 PARALLEL_TOLERANCE = 1e-3  # radians of parallax below which rays count as parallel: 300 m at a baseline of 0.3 m
 # Epipolar residual, radians, above which two box centres are not one object's (chosen: 20 columns at 1280, 0.6 of the
 # width of a chair three metres away).
 AZIMUTH_GAP_TOLERANCE = 0.1
-
-OK, PARALLEL, DIVERGING, AZIMUTH_GAP = "ok", "parallel", "diverging", "azimuth gap"
+_NO_DISTANCE = [ObjectOutcome.AZIMUTH_GAP, ObjectOutcome.DIVERGING, ObjectOutcome.PARALLEL]  # the first one counts
 
 
 class TriangulationError(ValueError):
-    """Two directions that give no distance; `outcome` says why: "parallel", "diverging" or "azimuth gap"."""
+    """Two directions that give no distance; `outcome` says why: parallel, diverging, or an azimuth gap."""
 
-    def __init__(self, message: str, outcome: str):
+    def __init__(self, message: str, outcome: ObjectOutcome):
         super().__init__(message)
         self.outcome = outcome
 
@@ -33,8 +33,8 @@ def triangulation_outcome(direction_upper: np.ndarray, direction_lower: np.ndarr
     upright = np.pi / 2 - np.maximum(np.abs(upper), np.abs(lower)) <= PARALLEL_TOLERANCE
     return np.select(
         [residual > AZIMUTH_GAP_TOLERANCE, parallax < -PARALLEL_TOLERANCE, (parallax <= PARALLEL_TOLERANCE) | upright],
-        [AZIMUTH_GAP, DIVERGING, PARALLEL],
-        OK,
+        _NO_DISTANCE,
+        ObjectOutcome.OK,
     )
 
 
@@ -50,7 +50,7 @@ def triangulate(direction_upper: np.ndarray, direction_lower: np.ndarray, baseli
     baseline = StereoRig(baseline).baseline
     outcome = triangulation_outcome(direction_upper, direction_lower)
     _, upper, _, lower, residual = _angles(direction_upper, direction_lower)
-    for name in (AZIMUTH_GAP, DIVERGING, PARALLEL):
+    for name in _NO_DISTANCE:
         if (outcome == name).any():
             first = tuple(np.argwhere(outcome == name)[0])
             e_u, e_l, gap = np.degrees([upper[first], lower[first], residual[first]])

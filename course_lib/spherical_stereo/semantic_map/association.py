@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.spherical_stereo.detection.detected_object import canonical_label
+from course_lib.spherical_stereo.outcomes import Reason
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 
 DISTANCE_TERMS = ("absolute", "as_printed")
@@ -64,7 +65,7 @@ class Association(NamedTuple):
     table: Penalty  # Every observation with every landmark, `(n_observations, n_landmarks)` arrays.
     hypotheses: tuple = ()  # the poses that a matcher beyond the paper weighed, best first
     confidence: float | None = None  # How sure the best of them is, 0 to 1; None from a matcher that weighs no poses.
-    reason: str | None = None  # Why the best of them should not be given out; None if it should.
+    reason: Reason | None = None  # Why the best of them should not be given out; None if it should.
     explanation: str = ""  # The reason in a sentence.
 
     @property

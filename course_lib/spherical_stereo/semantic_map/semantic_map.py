@@ -39,7 +39,7 @@ _CSV_FIRST_LINE = f"# semantic map, version {VERSION}"
 
 
 class SemanticMapError(ValueError):
-    """A semantic map, or the file of one, that cannot be used; the message says what is wrong and what to do."""
+    """A semantic map, or its file, that cannot be used; the message says why and what to do."""
 
 
 @dataclass(frozen=True)

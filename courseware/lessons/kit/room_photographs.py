@@ -4,9 +4,9 @@ import functools
 
 import numpy as np
 
-from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 from courseware.paths import data_path
+from courseware.simulation.room.stereo_recording import StereoPair, StereoRecording, read_stereo_recording
 
 
 @functools.cache

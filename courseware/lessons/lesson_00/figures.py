@@ -6,7 +6,6 @@ from matplotlib.figure import Figure
 from course_lib.depth_mcl.likelihood import ALPHA, valid_pixels
 from course_lib.depth_mcl.localizer import Estimate
 from course_lib.spherical_stereo.pose.localization import Localization
-from course_lib.spherical_stereo.recording import StereoPair
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 from courseware.lessons.kit.display import described
 from courseware.lessons.kit.live_figure import LiveFigure
@@ -16,6 +15,7 @@ from courseware.plots import figures
 from courseware.plots.corridor_figures import floor_plan
 from courseware.plots.panorama_drawing import add_list, draw_objects, panorama
 from courseware.plots.room_figures import draw_pose, map_axes
+from courseware.simulation.room.stereo_recording import StereoPair
 
 DEPTH_LIMITS = (0.0, 10.0)  # metres: the range of the camera
 HALF_VIEW = np.deg2rad(21.8)  # half of the SR4000's 43.6 degrees

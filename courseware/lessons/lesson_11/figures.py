@@ -8,7 +8,6 @@ from course_lib.spherical_stereo import SemanticMap
 from course_lib.spherical_stereo.detection.detected_object import box_centre
 from course_lib.spherical_stereo.detection.seam import extend_seam
 from course_lib.spherical_stereo.panorama import azimuth_elevation, direction_to_pixel, pixel_to_direction
-from course_lib.spherical_stereo.recording import TrueObject
 from courseware.lessons.kit.display import described
 from courseware.lessons.kit.live_figure import LiveFigure
 from courseware.lessons.kit.panel import Drawing, Panel, Slider
@@ -16,6 +15,7 @@ from courseware.lessons.kit.room_photographs import room_recording, the_image
 from courseware.lessons.lesson_11.sphere_view import LOOK, DrawnSphere, circle_around
 from courseware.plots.figures import BLACK, BLUE, VERMILION, YELLOW, line_style, new_figure
 from courseware.plots.panorama_drawing import draw_box, panorama
+from courseware.simulation.room.stereo_recording import TrueObject
 
 
 def idea_figure(image_bgr: np.ndarray, points: dict[str, np.ndarray]) -> Figure:

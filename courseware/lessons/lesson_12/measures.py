@@ -10,18 +10,18 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 
-from course_lib.spherical_stereo import recording
 from course_lib.spherical_stereo.detection.colour import mean_hue_saturation
 from course_lib.spherical_stereo.detection.darknet import read_cfg
 from course_lib.spherical_stereo.detection.detected_object import box_area, box_iou, shared_area, wrapped_box
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.detection.seam import extend_seam, select_on_circle
 from course_lib.spherical_stereo.panorama import read_panorama
-from course_lib.spherical_stereo.recording import TrueObject
 from courseware.experiments.room_evaluation import match_detections
 from courseware.lessons.kit.progress_bar import progress
 from courseware.lessons.kit.room_photographs import room_map, room_recording, the_image, the_pair
 from courseware.paths import data_path
+from courseware.simulation.room import stereo_recording
+from courseware.simulation.room.stereo_recording import TrueObject
 
 SOFA = 2  # number in the map of the sofa across the seam
 WHOLE_IOU = 0.7  # overlap with the exact box from which a sofa counts as found whole (chosen)
@@ -35,10 +35,10 @@ def training_picture() -> TrainingPicture:
     """Return the stored picture with the objects that the training asks for: at least half visible, largest first."""
     folder = data_path("detector/training_picture")
     (entry,) = json.loads((folder / "boxes.json").read_text(encoding="utf-8"))["images"]
-    things = [thing for thing in map(recording.true_object, entry["objects"]) if thing.visible_fraction >= 0.5]
+    things = [thing for thing in map(stereo_recording.true_object, entry["objects"]) if thing.visible_fraction >= 0.5]
     things.sort(key=lambda thing: -np.prod(np.subtract(thing.visible_box[2:], thing.visible_box[:2])))
     boxes = np.array([thing.visible_box for thing in things])
-    return TrainingPicture(read_panorama(folder / entry["file"]), [thing.label for thing in things], boxes)
+    return TrainingPicture(read_panorama(folder / entry["file"]).image, [thing.label for thing in things], boxes)
 
 
 def anchors() -> tuple[np.ndarray, np.ndarray]:

@@ -12,11 +12,11 @@ from course_lib.spherical_stereo.panorama import direction_from_angles, pixel_to
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from course_lib.spherical_stereo.ranging import triangulation
 from course_lib.spherical_stereo.ranging.object_positions import disparity_distance
-from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, TrueObject
 from courseware.experiments.room_evaluation import counts_as_object
 from courseware.lessons.kit.intervals import median_text
 from courseware.lessons.kit.panorama_features import scene
 from courseware.lessons.kit.room_photographs import pair_of, room_map, room_recording
+from courseware.simulation.room.stereo_recording import StereoPair, StereoRecording, TrueObject
 
 PLACES = ("02_a", "06_b", "08_a", "09_a")  # of experiment_2, where features are matched: all over the room
 # In the room, z up, the floor at 0, metres: `(n, 3)`, `(n, 3, 3)`, the map's x and y with the measured z, `(2, 3)`.

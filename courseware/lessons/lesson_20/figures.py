@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from course_lib.spherical_stereo.matching.features import FeatureMatches
+from course_lib.spherical_stereo.matching.alignment import FeatureMatches
 from courseware.lessons.kit.display import described
 from courseware.lessons.kit.live_figure import LiveFigure
 from courseware.lessons.kit.panel import Choice, Drawing, Panel, Slider

@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from course_lib.files import is_given
-from course_lib.spherical_stereo.matching.features import FeatureMatches
+from course_lib.spherical_stereo.drawn_boxes import read_stereo_boxes
+from course_lib.spherical_stereo.matching.alignment import FeatureMatches
 from course_lib.spherical_stereo.panorama import StereoRig, View, azimuth_elevation_of_pixel, open_pair, read_panorama
 from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.ranging.object_positions import MeasuredObject, measure_objects
-from course_lib.spherical_stereo.recording import read_stereo_boxes
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 from courseware.experiments.room import exact_detections
 from courseware.lessons.kit.room_photographs import room_map, room_recording
@@ -58,17 +58,18 @@ def panorama_pair(
         detections = [exact_detections(*one)[0] for one in zip(objects, images, strict=True)]
         given = "stand-in: the simulated room", *images, recorded.rig
         return PanoramaPair(*given, *detections, room_map(), pair.pose)
-    folder, images = Path(folder), []
+    folder, views = Path(folder), []
     for side in ("upper", "lower"):
         if not (path := _only_one(folder, [f"{side}.png", f"{side}.jpg", f"{side}.jpeg"])):
             raise FileNotFoundError(f"no {side} panorama in {folder}: name it {side}.png or {side}.jpg")
-        images.append(read_panorama(path))
-    open_pair(*images)
+        views.append(read_panorama(path))
+    views = open_pair(*views)
     if baseline is None:
         raise ValueError(f"how many metres is the upper camera of {folder.name} above the lower one?")
     if boxes is None and is_given(folder / "boxes.json"):
         boxes = folder / "boxes.json"
-    detections = [view.detections for view in read_stereo_boxes(boxes).on(*images)] if boxes is not None else ([], [])
+    views = views if boxes is None else read_stereo_boxes(boxes).on(*views)
+    images, detections = ([getattr(view, name) for view in views] for name in ("image", "detections"))
     semantic_map = SemanticMap.load(path) if (path := _only_one(folder, ["map.json", "map.csv"])) else None
     return PanoramaPair(folder.name, *images, StereoRig(baseline), *detections, semantic_map, None)
 

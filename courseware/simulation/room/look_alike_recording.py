@@ -136,6 +136,6 @@ def photograph_walks(
                 images = []
                 for state in rig.camera_states():
                     panorama_rig.write_photograph(folder / "view.jpg", renderer.render(state), models.camera, rng)
-                    images.append(read_panorama(folder / "view.jpg"))
+                    images.append(read_panorama(folder / "view.jpg").image)
                 views.append(NearbyView(place, *images))
             yield views

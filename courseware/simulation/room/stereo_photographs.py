@@ -7,7 +7,7 @@ import numpy as np
 from numpy.random import Generator
 
 from course_lib.spherical_stereo.detection.colour import Box
-from course_lib.spherical_stereo.recording import POSES_FILE, VERSION, TrueObject
+from courseware.simulation.room.stereo_recording import POSES_FILE, VERSION, TrueObject
 from courseware.simulation.sensors.panorama_renderer import BACKGROUND, PanoramaRenderer
 from courseware.simulation.sensors.panorama_rig import PanoramaCameraModel, RigPose, write_photograph
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from course_lib.beyond.look_alikes.hypotheses import rotations
+from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 
@@ -39,7 +39,7 @@ def observed(semantic_map, pose, which=None, rng=None):
     observations = []
     for index in indices:
         one = semantic_map.landmarks[index]
-        place = rotations(np.array(pose[2])).T @ (semantic_map.positions[index] - pose[:2])
+        place = rotation_2d(pose[2]).T @ (semantic_map.positions[index] - pose[:2])
         covariance = stereo_covariance(place)
         if rng is not None:
             place = rng.multivariate_normal(place, covariance)
@@ -48,7 +48,7 @@ def observed(semantic_map, pose, which=None, rng=None):
 
 
 def turned(semantic_map, angle, shift=(0.0, 0.0)):
-    rotation = rotations(np.array(angle))
+    rotation = rotation_2d(angle)
     landmarks = [
         Landmark(one.label, *map(float, rotation @ (one.x, one.y) + shift), one.hue, one.saturation)
         for one in semantic_map.landmarks

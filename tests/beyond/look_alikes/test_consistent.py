@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from course_lib.beyond.look_alikes import consistent
-from course_lib.beyond.look_alikes.confidence import AMBIGUOUS, MIN_CONFIDENCE, TOO_FEW_INLIERS
+from course_lib.beyond.look_alikes.confidence import MIN_CONFIDENCE
 from course_lib.beyond.look_alikes.consistent import associate_consistent, distinct, rank_poses
 from course_lib.beyond.look_alikes.evidence import Evidence
 from course_lib.beyond.look_alikes.matchers import associate_hungarian
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
+from course_lib.spherical_stereo.outcomes import Reason
 from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
@@ -28,7 +29,7 @@ def near(pose, other, metres=0.05, radians=0.02):
 
 def test_three_sofas_in_a_symmetric_room_have_two_poses_and_no_answer():
     found = localizer(SYMMETRIC).localize_observations(observed(SYMMETRIC, POSE))
-    assert (found.status, found.reason, found.pose) == ("unable", AMBIGUOUS, None)
+    assert (found.status, found.reason, found.pose) == ("unable", Reason.AMBIGUOUS, None)
     for place in (POSE, OTHER_POSE):
         assert [near(one.pose, place) for one in found.alternatives[:2]].count(True) == 1
     assert [one.share for one in found.alternatives[:2]] == pytest.approx([0.5, 0.5], abs=0.02)
@@ -49,7 +50,7 @@ def test_one_plant_tells_the_two_apart_a_false_observation_is_left_unmatched_and
     assert found.used_pairs == tuple((k + 1, k) for k in range(6))
     assert found.association.unassigned == (0,)
     found = localizer(PLANTED).localize_observations(observed(PLANTED, POSE, which=(3, 5)))
-    assert (found.status, found.reason) == ("unable", TOO_FEW_INLIERS)
+    assert (found.status, found.reason) == ("unable", Reason.TOO_FEW_AGREE)
     assert found.alternatives
 
 
@@ -73,7 +74,7 @@ def test_the_room_in_a_mirror_is_refused_however_far_ahead_its_best_pose_is():
     assert localizer(room).localize_observations(seen).status == "ok"
     assert associate_consistent(mirrored, room, evidence=Evidence(absolute=False)).confidence > MIN_CONFIDENCE
     found = localizer(room).localize_observations(mirrored)
-    assert (found.status, found.reason) == ("unable", AMBIGUOUS)
+    assert (found.status, found.reason) == ("unable", Reason.AMBIGUOUS)
 
 
 @pytest.mark.parametrize("angle", [np.pi / 2, -2.5])

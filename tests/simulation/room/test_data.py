@@ -5,7 +5,6 @@ import pytest
 
 from course_lib.geometry import wrap_angle
 from course_lib.rendering.scene_map import SceneMap
-from course_lib.spherical_stereo.recording import read_stereo_recording
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 from courseware.simulation.corridor.surface_fusion import FusionModel
 from courseware.simulation.data_folder import checksums
@@ -16,6 +15,7 @@ from courseware.simulation.room.experiment_room import make_experiment_room
 from courseware.simulation.room.furnishing import make_look_alike_room
 from courseware.simulation.room.look_alike_recording import RecordingModels
 from courseware.simulation.room.measurement_places import MEASUREMENT_PLACES
+from courseware.simulation.room.stereo_recording import read_stereo_recording
 from courseware.simulation.room.survey import RoomSurveyModel
 from courseware.simulation.sensors.laser_survey import ScannerModel
 from tools.training_images import make_room_images, read_image_list

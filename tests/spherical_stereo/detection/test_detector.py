@@ -91,12 +91,23 @@ def test_a_box_below_the_threshold_votes_on_the_place_of_a_surer_one(detector, m
     assert sure.tolist() == [0.6]
 
 
-def test_a_view_and_a_detector_sent_elsewhere_give_the_same_and_an_image_is_checked(detector, rng):
+def test_a_detector_sent_elsewhere_gives_the_same_and_an_image_is_checked(detector, rng):
     image = panorama(rng, (10, 50, RED))
     assert pickle.loads(pickle.dumps(detector)).detect(image) == detector.detect(image)
     assert detection.find_objects(open_view(image), detector).detections == tuple(detector.detect(image))
     with pytest.raises(PanoramaError, match="twice as wide"):
         detector.detect(image[:, :255])
+
+
+def test_every_detector_is_given_the_image_as_the_protocol_says(files, rng):
+    class Noting(YoloDetector):
+        def detect(self, image_bgr):
+            given.append(image_bgr)
+            return super().detect(image_bgr)
+
+    given, image = [], panorama(rng, (10, 50, RED))
+    detection.find_objects(open_view(image), Noting(*files))
+    assert given[0] is image
 
 
 def test_files_that_do_not_belong_together_and_folders_that_lack_one_are_refused(copied):

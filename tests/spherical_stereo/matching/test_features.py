@@ -5,10 +5,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from course_lib.spherical_stereo.matching import epipolar
+from course_lib.spherical_stereo.matching.alignment import camera_alignment
 from course_lib.spherical_stereo.matching.epipolar import best_pairs, epipolar_pairs
 from course_lib.spherical_stereo.matching.features import (
     PanoramaFeatures,
-    camera_alignment,
     detect_features,
     inside_box,
 )

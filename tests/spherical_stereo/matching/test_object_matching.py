@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from course_lib.spherical_stereo.matching import features as feature_matching
-from course_lib.spherical_stereo.matching import object_matching as reasons
+from course_lib.spherical_stereo.matching.alignment import SwappedImagesError, check_not_swapped, match_features
 from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
-from course_lib.spherical_stereo.matching.features import PanoramaFeatures, SwappedImagesError, check_not_swapped
+from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features, find_features, inside_box
 from course_lib.spherical_stereo.matching.object_matching import match_objects, match_views, pair_by_most_matches
+from course_lib.spherical_stereo.outcomes import NoPartner
 from course_lib.spherical_stereo.panorama import StereoRig, View, azimuth_elevation_of_pixel, open_view
 from tests.spherical_stereo.stereo_scene import BASELINE, HEIGHT, WIDTH, Seen, scene
 
@@ -24,7 +24,7 @@ TIED = [("upper", 7), ("lower", 0), ("lower", 8)]
 @pytest.fixture(scope="module")
 def features():
     """Both views of the scene, with their features."""
-    return [feature_matching.find_features(open_view(image)) for image in (UPPER, LOWER)]
+    return [find_features(open_view(image)) for image in (UPPER, LOWER)]
 
 
 def match_scene(features, upper=UPPER_SEEN, lower=LOWER_SEEN, **options):
@@ -43,8 +43,8 @@ def test_every_object_finds_itself_by_features_in_its_boxes_that_obey_the_epipol
     assert matches == sorted(matches, key=lambda m: m.n_matches, reverse=True)
     for match in matches:
         assert match.keypoints_upper.shape == match.keypoints_lower.shape == (match.n_matches, 2)
-        assert feature_matching.inside_box(match.keypoints_upper, UPPER_SEEN[match.upper].box, WIDTH).all()
-        assert feature_matching.inside_box(match.keypoints_lower, LOWER_SEEN[match.lower].box, WIDTH).all()
+        assert inside_box(match.keypoints_upper, UPPER_SEEN[match.upper].box, WIDTH).all()
+        assert inside_box(match.keypoints_lower, LOWER_SEEN[match.lower].box, WIDTH).all()
         upper, lower = (
             azimuth_elevation_of_pixel(one, WIDTH, HEIGHT) for one in (match.keypoints_upper, match.keypoints_lower)
         )
@@ -57,10 +57,10 @@ def test_every_object_finds_itself_by_features_in_its_boxes_that_obey_the_epipol
     ("upper", "lower", "n_matches", "unmatched"),
     [
         (UPPER_SEEN, LOWER_SEEN, 8, []),
-        (UPPER_SEEN, [*LOWER_SEEN, LOWER_SEEN[0]], 7, [(*one, reasons.TIE) for one in TIED]),
-        ([*UPPER_SEEN, IN_THE_AIR], LOWER_SEEN, 8, [("upper", 8, reasons.NO_MATCHES)]),
-        ([*UPPER_SEEN, UPPER_HALF], LOWER_SEEN, 8, [("upper", 8, reasons.PARTNER_TAKEN)]),
-        (UPPER_SEEN, WITHOUT_CABINET, 7, [("upper", 7, reasons.CLASS_NOT_IN_OTHER)]),
+        (UPPER_SEEN, [*LOWER_SEEN, LOWER_SEEN[0]], 7, [(*one, NoPartner.TIE) for one in TIED]),
+        ([*UPPER_SEEN, IN_THE_AIR], LOWER_SEEN, 8, [("upper", 8, NoPartner.NO_MATCHES)]),
+        ([*UPPER_SEEN, UPPER_HALF], LOWER_SEEN, 8, [("upper", 8, NoPartner.PARTNER_TAKEN)]),
+        (UPPER_SEEN, WITHOUT_CABINET, 7, [("upper", 7, NoPartner.CLASS_NOT_IN_OTHER)]),
     ],
 )
 def test_a_detection_without_partner_says_why(features, upper, lower, n_matches, unmatched):
@@ -73,7 +73,7 @@ def test_swapped_images_are_told_from_the_sign_of_the_disparity(features, rng):
     with pytest.raises(SwappedImagesError, match="swapped"):
         match_objects(LOWER, LOWER_SEEN, UPPER, UPPER_SEEN, RIG)
     with pytest.raises(SwappedImagesError, match="Swap the two images"):
-        feature_matching.match_features(features[1].features, features[0].features)
+        match_features(features[1].features, features[0].features)
     # Disparities of either sign are no exchange.
     check_not_swapped(rng.normal(0, 0.05, 1000))
     check_not_swapped(np.zeros(0))
@@ -87,19 +87,19 @@ def test_an_object_needs_as_many_features_as_are_asked_for(features):
     fewest = min(counts.values()) + 1
     matching = match_scene(features, min_features=fewest)
     assert {m.upper for m in matching.matches} == {i for i, n in counts.items() if n >= fewest}
-    assert {item.reason for item in matching.unmatched} == {reasons.TOO_FEW}
+    assert {item.reason for item in matching.unmatched} == {NoPartner.TOO_FEW_FEATURES}
 
 
 def test_whole_panoramas_match_mostly_at_equal_azimuth(features):
     """The search knows nothing of the constraint, so the share that obeys it is a finding."""
     upper, lower = (view.features for view in features)
-    matches = feature_matching.match_features(upper, lower)
+    matches = match_features(upper, lower)
     assert len(matches) > 100
     assert matches.epipolar_share > 0.9
     assert np.median(matches.vertical_disparity[matches.epipolar]) > 0.03
     assert np.median(np.abs(matches.azimuth_difference)) < 0.5 * 2 * np.pi / WIDTH
-    rolled = feature_matching.detect_features(np.roll(LOWER, 100, axis=1))
-    assert not feature_matching.match_features(upper, rolled).epipolar_share > 0.1
+    rolled = detect_features(np.roll(LOWER, 100, axis=1))
+    assert not match_features(upper, rolled).epipolar_share > 0.1
 
 
 @pytest.mark.parametrize(

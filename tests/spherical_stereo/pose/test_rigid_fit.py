@@ -9,6 +9,7 @@ from scipy.stats import chi2
 from skimage.transform import EuclideanTransform
 
 from course_lib.geometry import wrap_angle
+from course_lib.spherical_stereo.outcomes import Reason
 from course_lib.spherical_stereo.pose import rigid_fit
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, fit_covariance, fit_rigid_2d, residual_statistics
 
@@ -74,11 +75,11 @@ ONE_PLACE = np.tile([2.0, 1.0], (3, 1))
 @pytest.mark.parametrize(
     ("source", "target", "reason", "says"),
     [
-        (np.zeros((0, 2)), np.zeros((0, 2)), rigid_fit.TOO_FEW_PAIRS, "at least two pairs of points; got 0"),
-        (np.zeros((1, 2)), np.zeros((1, 2)), rigid_fit.TOO_FEW_PAIRS, "at least two pairs of points; got 1"),
-        (ONE_PLACE, TRIANGLE, rigid_fit.COINCIDENT, "3 source points"),
-        (TRIANGLE, ONE_PLACE, rigid_fit.COINCIDENT, "3 target points"),
-        *((TRIANGLE * [1, -1], Pose2D(-9, 4, turn).apply(TRIANGLE), rigid_fit.MIRRORED, "mirror") for turn in range(6)),
+        (np.zeros((0, 2)), np.zeros((0, 2)), Reason.TOO_FEW_PAIRS, "at least two pairs of points; got 0"),
+        (np.zeros((1, 2)), np.zeros((1, 2)), Reason.TOO_FEW_PAIRS, "at least two pairs of points; got 1"),
+        (ONE_PLACE, TRIANGLE, Reason.COINCIDENT, "3 source points"),
+        (TRIANGLE, ONE_PLACE, Reason.COINCIDENT, "3 target points"),
+        *((TRIANGLE * [1, -1], Pose2D(-9, 4, turn).apply(TRIANGLE), Reason.MIRRORED, "mirror") for turn in range(6)),
     ],
 )
 def test_points_without_a_pose_have_a_reason(source, target, reason, says):

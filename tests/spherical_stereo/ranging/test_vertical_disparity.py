@@ -27,7 +27,7 @@ def test_three_exact_features_or_more_give_the_range_of_their_points(rng):
     points = rng.uniform([1, -3, -1.2], [4, 3, 0.5], (41, 3))
     found = disparity_distance(match_of(points), *SIZE, BASELINE)
     assert found.horizontal_range == pytest.approx(np.median(np.hypot(points[:, 0], points[:, 1])), rel=1e-9)
-    for n, outcome in ((0, "too few matches"), (2, "too few matches"), (3, "ok")):
+    for n, outcome in ((0, "too few disparities"), (2, "too few disparities"), (3, "ok")):
         found = disparity_distance(match_of(points[:n]), *SIZE, BASELINE)
         assert (found.outcome, np.isnan(found.horizontal_range), np.isnan(found.sigma)) == (outcome, n < 3, n < 3)
 
