@@ -14,7 +14,7 @@ from courseware.paths import REPOSITORY
 def test_every_misreading_shows_at_the_given_poses():
     checker = lesson_20.Checker(lesson_20.recording())
     for frame in (0, 8, 20):
-        right, *misread = (checker(frame, name) for name in lesson_20.readings.READINGS)
+        right, *misread = (checker(frame, name) for name in lesson_20.recordings.READINGS)
         assert all(wrong.hits < 0.5 or wrong.median > 3 * right.median for wrong in misread)
 
 

@@ -1,7 +1,14 @@
 """Lesson 10, lost and found: a hotel with two rooms alike, kidnappings in it, filters that start anywhere."""
 
 from courseware.lessons.lesson_10 import figures
-from courseware.lessons.lesson_10.hotel import CAMERA, carried_away, carried_next_door, hotel_map, into_102, leaving_101
+from courseware.lessons.lesson_10.hotel_floor import (
+    CAMERA,
+    carried_away,
+    carried_next_door,
+    hotel_map,
+    into_102,
+    leaving_101,
+)
 from courseware.lessons.lesson_10.narrowing import (
     ALPHA,
     BETA,
