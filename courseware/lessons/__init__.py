@@ -4,8 +4,8 @@ Several lessons share `kit/`. `predictions` asks for predictions and prints them
 checks answers, `projects` scores projects, and `statements` says what of a notebook an answer needs. `student_record`
 keeps predictions and results, `lesson_progress` counts them, and `show_progress` shows the counts. `display` shows a
 figure and `scene` a 3D scene. `panel`, `live_figure` and `progress_bar` are the moving parts. `intervals` prints
-medians and shares with their intervals. `room_photographs`, `panorama_features`, `room_observations` and
-`corridor_views` load the data of several lessons. The methods are not here but in `course_lib.depth_mcl` and
+medians and shares with their intervals. `corridor_data` and `room_data`
+load the data of several lessons. The methods are not here but in `course_lib.depth_mcl` and
 `course_lib.spherical_stereo`. Figures and scene objects that commands draw too are in `courseware.plots`.
 
 A new lesson NN needs a notebook and a folder:

@@ -20,7 +20,7 @@ from course_lib.spherical_stereo.panorama import read_panorama
 from course_lib.spherical_stereo.recording import TrueObject
 from courseware.experiments.room_evaluation import match_detections
 from courseware.lessons.kit.progress_bar import progress
-from courseware.lessons.kit.room_photographs import room_map, room_recording, the_image, the_pair
+from courseware.lessons.kit.room_data import room_map, room_recording, the_image, the_pair
 from courseware.paths import data_path
 
 SOFA = 2  # number in the map of the sofa across the seam

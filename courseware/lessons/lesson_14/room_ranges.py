@@ -15,8 +15,7 @@ from course_lib.spherical_stereo.ranging.object_positions import disparity_dista
 from course_lib.spherical_stereo.recording import StereoPair, StereoRecording, TrueObject
 from courseware.experiments.room_evaluation import counts_as_object
 from courseware.lessons.kit.intervals import median_text
-from courseware.lessons.kit.panorama_features import scene
-from courseware.lessons.kit.room_photographs import pair_of, room_map, room_recording
+from courseware.lessons.kit.room_data import pair_of, room_map, room_recording, scene
 
 PLACES = ("02_a", "06_b", "08_a", "09_a")  # of experiment_2, where features are matched: all over the room
 # In the room, z up, the floor at 0, metres: `(n, 3)`, `(n, 3, 3)`, the map's x and y with the measured z, `(2, 3)`.

@@ -1,6 +1,6 @@
 """Lesson 16, pose from points: matched points of the room, noise on points, the figures and the panel of the fit."""
 
-from courseware.lessons.kit.room_observations import room_scenes
+from courseware.lessons.kit.room_data import room_scenes
 from courseware.lessons.lesson_16.figures import centred_figure, heading_figure, noise_figure
 from courseware.lessons.lesson_16.fits import (
     LINE,
