@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from courseware.answers.foundation_3 import fuse_correlated
-from courseware.lessons.foundation_3 import JOINS, band, covariance_intersection, join, kalman_update, sees, wagon
-from courseware.lessons.foundation_3.fusion import normalized_errors
+from courseware.lessons.foundation_3 import fusion
+from courseware.lessons.foundation_3.fusion import JOINS, band, covariance_intersection, join, kalman_update, sees
 
 
 @pytest.mark.parametrize("how", JOINS)
@@ -34,9 +34,9 @@ def test_covariance_intersection_never_claims_too_much(shared):
 
 def test_the_band_holds_95_percent_of_honest_means_and_the_wagon_is_honest():
     rng, (low, high) = np.random.default_rng(3), band(20, 6)
-    means = normalized_errors(rng.standard_normal((4000, 20, 6)), np.eye(6)).mean(axis=1)
+    means = fusion.normalized_errors(rng.standard_normal((4000, 20, 6)), np.eye(6)).mean(axis=1)
     assert np.mean((means > low) & (means < high)) == pytest.approx(0.95, abs=0.01)
-    assert 0.9 < wagon(400, 1.0, 7).mean() < 1.1 < 3 < wagon(400, 0.25, 7)[-1].mean()
+    assert 0.9 < fusion.wagon(400, 1.0, 7).mean() < 1.1 < 3 < fusion.wagon(400, 0.25, 7)[-1].mean()
 
 
 def test_an_estimate_made_from_the_start_is_the_join_with_it():

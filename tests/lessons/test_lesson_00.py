@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from courseware.answers.lesson_00 import off_the_top
-from courseware.lessons.lesson_00 import mean_votes, moment, pose_panel
+from courseware.lessons.lesson_00.figures import pose_panel
+from courseware.lessons.lesson_00.recorded import mean_votes, moment
 from courseware.lessons.lesson_00.search import BUDGET, Score
 
 

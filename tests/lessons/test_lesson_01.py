@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from courseware.lessons.lesson_01 import drive_panel, turn_per_degree
+from courseware.lessons.lesson_01.figures import drive_panel, turn_per_degree
 
 
 @pytest.mark.parametrize("pitch_deg", [0, 18, 60, 85, -45])

@@ -7,7 +7,7 @@ from scipy.stats import norm
 from course_lib.geometry import wrap_angle
 from courseware.answers.lesson_05 import min_sigma
 from courseware.lessons.kit.exercises import find_exercise, judge
-from courseware.lessons.lesson_05.clouds import wagon_states, walk
+from courseware.lessons.lesson_05.simulations import wagon_states, walk
 
 
 def test_a_yaw_that_the_oracle_does_not_judge_does_a_random_walk():

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from courseware.answers.lesson_07 import stratified_error
-from courseware.lessons.lesson_07 import copies, stepper_panel
+from courseware.lessons.lesson_07.filter_stepper import stepper_panel
+from courseware.lessons.lesson_07.simulations import copies
 
 
 def test_buttons_step_in_the_order_of_figure_1_and_a_step_that_cannot_come_is_told_and_changes_nothing():

@@ -5,7 +5,7 @@ import pytest
 from scipy.stats import chi2
 
 from courseware.lessons.lesson_09.panel import descend
-from courseware.lessons.lesson_09.runs import cloud_density, slide
+from courseware.lessons.lesson_09.trials import cloud_density, slide
 
 
 def test_the_nearest_particle_is_as_far_as_its_distribution_says():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from courseware.lessons.lesson_10.hotel import ALIKE, OUT_OF_101, carried_next_door, record, walk
+from courseware.lessons.lesson_10.hotel_floor import ALIKE, OUT_OF_101, carried_next_door, record, walk
 from courseware.lessons.lesson_10.narrowing import MAX_PARTICLES, MIN_PARTICLES, kld_count, narrow, shares
 from courseware.lessons.lesson_10.trials import KIDNAPPED, PERSON, Trace, alarms, follow, traces
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from course_lib.spherical_stereo.panorama import direction_from_angles, direction_to_pixel, pixel_to_direction
-from courseware.lessons.kit.room_photographs import the_image
+from courseware.lessons.kit.room_data import the_image
 from courseware.lessons.lesson_11.sphere_view import DrawnSphere
 from courseware.lessons.lesson_11.write_sphere_scene import STORED, scene_html
 from courseware.plots.figures import new_figure

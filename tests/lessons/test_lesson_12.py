@@ -6,7 +6,7 @@ import pytest
 from course_lib.spherical_stereo.detection.colour import central_half, mean_hue_saturation
 from course_lib.spherical_stereo.detection.detector import YoloDetector
 from course_lib.spherical_stereo.detection.seam import centres_in_range
-from courseware.lessons.kit.room_photographs import the_image
+from courseware.lessons.kit.room_data import the_image
 from courseware.lessons.lesson_12.figures import part_of, where_they_count
 from courseware.lessons.lesson_12.measures import cut_sofa, hues_and_saturations, true_object
 from courseware.paths import data_path

@@ -5,7 +5,7 @@ import pytest
 
 from course_lib.spherical_stereo.matching.epipolar import epipolar_residual
 from course_lib.spherical_stereo.matching.object_matching import match_views
-from courseware.lessons.kit.panorama_features import scene
+from courseware.lessons.kit.room_data import scene
 from courseware.lessons.lesson_13.figures import band, half_circle
 from courseware.lessons.lesson_13.matching import count_table
 

@@ -5,7 +5,7 @@ import pytest
 
 from course_lib.spherical_stereo.ranging.triangulation import object_position, triangulation_covariance
 from courseware.lessons.lesson_14.figures import PIXEL, directions_to, ellipse, sampled_places
-from courseware.lessons.lesson_14.ranges import box_range, cuboid_range
+from courseware.lessons.lesson_14.room_ranges import box_range, cuboid_range
 
 
 def test_directions_to_a_point_lead_back_to_it_and_noisy_ones_spread_as_the_covariance_says():

@@ -1,8 +1,7 @@
 """Lesson 17: objects that were not seen, and what would have saved a pose."""
 
 from course_lib.spherical_stereo import Localization, Observation, SemanticLocalizer
-from courseware.lessons.kit.room_observations import in_body_frame
-from courseware.lessons.lesson_17 import room_map, room_recording
+from courseware.lessons.kit.room_data import in_body_frame, room_map, room_recording
 from courseware.lessons.lesson_17.room_runs import exact_results, is_matched_rightly, thinned
 
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from course_lib.beyond.look_alikes.evidence import detection_probabilities
-from courseware.lessons.lesson_18 import room_map, room_scenes, scenes
+from courseware.lessons.kit.room_data import room_map, room_scenes
+from courseware.lessons.lesson_18 import scenes
 from courseware.lessons.lesson_18.panel import MIRROR, PAIRS, ROOM, ranked, score_terms
 from courseware.lessons.lesson_18.trials import answers_of
 

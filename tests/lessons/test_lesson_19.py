@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
-from courseware.lessons.foundation_3 import covariance_intersection
-from courseware.lessons.lesson_19 import anywhere_panel, journey, misplaced, panel, stages, turn_and_look, world
+from courseware.lessons.foundation_3.fusion import covariance_intersection
+from courseware.lessons.lesson_19 import panel, stages
+from courseware.lessons.lesson_19.panel import anywhere_panel
+from courseware.lessons.lesson_19.stages import journey, misplaced, turn_and_look, world
 
 STORY = (3.35, 3.30, 65)
 

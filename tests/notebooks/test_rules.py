@@ -124,6 +124,22 @@ def test_no_lesson_uses_widgets_that_hang_or_global_random_numbers(lesson):
         assert not re.search(r"np\.random\.(?!default_rng|Generator)", cell.source), cell.id
 
 
+def test_cells_call_what_the_lessons_modules_hold_and_no_variable_takes_the_name_of_a_module(lesson):
+    nodes = [node for cell in lesson.code_cells for node in ast.walk(ast.parse(cell.source))]
+    imported = {
+        alias.name: REPOSITORY.joinpath(*node.module.split("."), f"{alias.name}.py")
+        for node in nodes
+        if isinstance(node, ast.ImportFrom) and node.module.startswith("courseware.lessons.")
+        for alias in node.names
+    }
+    modules = {name: path.read_text(encoding="utf-8") for name, path in imported.items() if path.is_file()}
+    for node in nodes:
+        if isinstance(node, ast.Attribute) and getattr(node.value, "id", None) in modules:
+            at_the_top = rf"^(def |class |(\w+, )*){node.attr}\b"
+            assert re.search(at_the_top, modules[node.value.id], re.M), f"{node.value.id}.{node.attr}"
+        assert not (isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node.id in modules), node.id
+
+
 def test_no_plumbing_uses_widgets_that_hang():
     for path in (REPOSITORY / "courseware" / "lessons").glob("**/*.py"):
         assert not names_in(path.read_text(encoding="utf-8")) & FORBIDDEN_WIDGETS, path.name

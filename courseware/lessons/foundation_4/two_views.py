@@ -12,7 +12,7 @@ import numpy as np
 from course_lib.geometry import rotation_angle, rotation_exp
 from course_lib.spherical_stereo.matching.epipolar import RATIO
 from course_lib.spherical_stereo.panorama import direction_from_angles
-from courseware.lessons.kit.panorama_features import scene
+from courseware.lessons.kit.room_data import scene
 
 PIXEL = 2 * np.pi / 1280  # radians of one pixel of the room's panoramas
 TURN, PLACE = np.array([0.1, -0.2, 0.7]), np.array([0.5, 0.3, -0.1])  # of the simulated second camera: rad, m

@@ -10,7 +10,7 @@ from course_lib.geometry import optical_pose, state_from_optical_pose
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
 from courseware.lessons.kit.box_world import box_map
-from courseware.lessons.kit.corridor_views import corridor_map, wagon_run
+from courseware.lessons.kit.corridor_data import corridor_map, wagon_run
 
 FRAME = 100  # of the corridor run: benches, doors and pillars in view, nothing special (chosen)
 

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from course_lib.geometry import optical_pose, pose_matrix, rotation_log
 from course_lib.rendering.camera import DepthCamera
 from course_lib.rendering.renderer import DepthRenderer
-from courseware.lessons.kit.corridor_views import corridor_map, draw_walls
+from courseware.lessons.kit.corridor_data import corridor_map, draw_walls
 from courseware.lessons.kit.display import described
 from courseware.lessons.kit.live_figure import LiveFigure
 from courseware.lessons.kit.panel import Drawing, Panel, Slider

@@ -12,7 +12,7 @@ from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 from courseware.experiments.intervals import wilson_percent
 from courseware.lessons.kit.box_world import Box, BoxWorld
-from courseware.lessons.kit.corridor_views import wagon_run
+from courseware.lessons.kit.corridor_data import wagon_run
 from courseware.simulation.corridor.mesh_building import to_polydata
 from courseware.simulation.corridor.surface_fusion import FusionModel, fuse, simplify
 from courseware.simulation.sensors.laser_survey import Scan, ScannerModel, survey

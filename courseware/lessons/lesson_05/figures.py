@@ -5,11 +5,11 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from courseware.lessons.kit.corridor_views import draw_walls
+from courseware.lessons.kit.corridor_data import draw_walls
 from courseware.lessons.kit.display import described
 from courseware.lessons.kit.live_figure import LiveFigure
 from courseware.lessons.kit.panel import Choice, Drawing, Panel, Slider
-from courseware.lessons.lesson_05.clouds import Walk, distances, wagon_states, walk
+from courseware.lessons.lesson_05.simulations import Walk, distances, wagon_states, walk
 from courseware.plots import figures
 
 SCENE_ALT = """Two clouds of arrowheads in a corridor: a small black one, all nearly alike, and a blue one that is

@@ -10,7 +10,7 @@ from course_lib.depth_mcl.likelihood import ALPHA, likelihood, normalize_likelih
 from course_lib.geometry import state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.sensor import subsample_depth
-from courseware.lessons.kit.corridor_views import corridor_map, wagon_run
+from courseware.lessons.kit.corridor_data import corridor_map, wagon_run
 
 FRAME = 100  # of the wagon's run: two people stand before the camera who are not in the map
 N_PLACES = 41  # cameras along one axis

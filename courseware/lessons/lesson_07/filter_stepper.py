@@ -20,7 +20,7 @@ from course_lib.depth_mcl.motion import propagate
 from course_lib.geometry import state_from_optical_pose
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.sensor import subsample_depth
-from courseware.lessons.kit.corridor_views import corridor_map, wagon_run
+from courseware.lessons.kit.corridor_data import corridor_map, wagon_run
 from courseware.lessons.kit.live_figure import LiveFigure
 from courseware.lessons.kit.panel import Drawing, Panel, Slider
 from courseware.plots import figures

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from courseware.lessons.kit.display import described
-from courseware.lessons.lesson_09.runs import Track
+from courseware.lessons.lesson_09.trials import Track
 from courseware.plots.figures import BLACK, BLUE, SKY_BLUE, VERMILION, depth_images, line_style, new_figure
 
 SCENE_ALT = """A corridor cut open; along it small blue ellipsoids on a dashed line, first upright, then wide, then

@@ -10,7 +10,7 @@ from course_lib.beyond.six_dof.refinement import gauss_newton_step, surface_norm
 from course_lib.depth_mcl.evaluation import pose_errors
 from courseware.lessons.kit.live_figure import LiveFigure
 from courseware.lessons.kit.panel import Choice, Drawing, Panel, Slider
-from courseware.lessons.lesson_09.runs import hand_run, levels
+from courseware.lessons.lesson_09.trials import hand_run, levels
 from courseware.plots import figures
 
 FRAME, STEPS = 60, 12

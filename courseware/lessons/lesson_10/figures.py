@@ -14,7 +14,7 @@ from matplotlib.ticker import MaxNLocator
 from course_lib.beyond.lost_and_found.global_search import PoseCandidates
 from courseware.lessons.kit.display import described
 from courseware.lessons.lesson_10.adaptive_count import kld_count
-from courseware.lessons.lesson_10.hotel import ALIKE, FURNITURE, WALLS, Recording, leaving_101
+from courseware.lessons.lesson_10.hotel_floor import ALIKE, FURNITURE, WALLS, Recording, leaving_101
 from courseware.lessons.lesson_10.narrowing import Round
 from courseware.lessons.lesson_10.trials import GOALS, KIDNAPPED, alarms, traces
 from courseware.plots.figures import BLACK, BLUE, VERMILION, line_style, new_figure

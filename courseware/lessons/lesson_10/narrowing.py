@@ -12,7 +12,7 @@ from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.sensor import subsample_depth
 from courseware.lessons.lesson_10.adaptive_count import kld_count, occupied_bins
 from courseware.lessons.lesson_10.enclosed_space import EnclosedSpace
-from courseware.lessons.lesson_10.hotel import ALIKE, CAMERA, hotel_map, leaving_101
+from courseware.lessons.lesson_10.hotel_floor import ALIKE, CAMERA, hotel_map, leaving_101
 
 # All chosen in this world, with seeds from 10,000 up.
 COARSE = CAMERA.resized(20, 15)

@@ -6,7 +6,7 @@ from courseware.lessons.kit.live_figure import LiveFigure
 from courseware.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
 from courseware.lessons.kit.progress_bar import progress
 from courseware.lessons.lesson_10.figures import BELOW, BESIDE, EVENT, LIGHT_TO_DARK, draw_camera, draw_hotel, style
-from courseware.lessons.lesson_10.hotel import FRAMES, leaving_101
+from courseware.lessons.lesson_10.hotel_floor import FRAMES, leaving_101
 from courseware.lessons.lesson_10.narrowing import MAX_PARTICLES, RUNS, narrow, shares
 from courseware.lessons.lesson_10.trials import GOALS, KIDNAPPED, PERSON, alarms, running_mean, traces
 from courseware.plots import figures

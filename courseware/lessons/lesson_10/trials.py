@@ -16,8 +16,8 @@ from course_lib.depth_mcl.localizer import NoMeasurementWarning
 from course_lib.rendering.renderer import DepthRenderer
 from courseware.experiments.intervals import wilson_percent
 from courseware.lessons.kit.progress_bar import progress
-from courseware.lessons.lesson_10 import hotel
-from courseware.lessons.lesson_10.hotel import CAMERA, Recording, hotel_map, leaving_101, record, walk
+from courseware.lessons.lesson_10 import hotel_floor
+from courseware.lessons.lesson_10.hotel_floor import CAMERA, Recording, hotel_map, leaving_101, record, walk
 from courseware.paths import data_path
 
 PARTICLES, SEARCH = 150, {"max_places": 3_000}  # of the filter and of the search: the hotel is small
@@ -25,9 +25,9 @@ SEARCHED, NEAR = 24, 0.2  # frames of the walk out of 101, metres
 
 BEFORE, COVERED, AFTER = 6, 4, 8
 KIDNAPPINGS = {
-    "corridor to 103": (hotel.IN_THE_CORRIDOR, hotel.IN_103),
-    "103 to corridor": (hotel.IN_103, hotel.TO_THE_LIFT),
-    "corridor to 102": (hotel.TO_THE_LIFT, hotel.IN_102),
+    "corridor to 103": (hotel_floor.IN_THE_CORRIDOR, hotel_floor.IN_103),
+    "103 to corridor": (hotel_floor.IN_103, hotel_floor.TO_THE_LIFT),
+    "corridor to 102": (hotel_floor.TO_THE_LIFT, hotel_floor.IN_102),
 }
 
 
@@ -76,7 +76,7 @@ def search_run() -> list[PoseCandidates]:
 # lost: `(T,)` bool, whether the refined pose cannot be right.
 Trace = namedtuple("Trace", "scores lost")
 PERSON, KIDNAPPED = range(10, 16), 24  # frames
-GOALS = {"to 103": hotel.IN_103, "to 101": hotel.IN_101, "to the lift": hotel.TO_THE_LIFT}
+GOALS = {"to 103": hotel_floor.IN_103, "to 101": hotel_floor.IN_101, "to the lift": hotel_floor.TO_THE_LIFT}
 
 
 @functools.cache
@@ -84,7 +84,7 @@ def traces() -> dict[str, Trace]:
     """Return for each of `GOALS` the scores along the corridor and then there."""
     found = {}
     for k, (name, goal) in enumerate(progress(GOALS.items(), "recording scores", len(GOALS))):
-        recording = record(np.concatenate([walk(hotel.ALONG, KIDNAPPED), walk(goal, 8)]), 10_011 + k)
+        recording = record(np.concatenate([walk(hotel_floor.ALONG, KIDNAPPED), walk(goal, 8)]), 10_011 + k)
         for number in PERSON:  # 0.8 m in front of the camera, 16 columns wide
             left = 8 * (number - PERSON.start) - 8
             recording.depths[number, :, max(left, 0) : left + 16] = 0.8

@@ -11,7 +11,7 @@ from course_lib.spherical_stereo.panorama import azimuth_elevation, direction_to
 from courseware.lessons.kit.display import described
 from courseware.lessons.kit.live_figure import LiveFigure
 from courseware.lessons.kit.panel import Drawing, Panel, Slider
-from courseware.lessons.kit.room_photographs import room_recording, the_image
+from courseware.lessons.kit.room_data import room_recording, the_image
 from courseware.lessons.lesson_11.sphere_view import LOOK, DrawnSphere, circle_around
 from courseware.plots.figures import BLACK, BLUE, VERMILION, YELLOW, line_style, new_figure
 from courseware.plots.panorama_drawing import draw_box, panorama

@@ -10,7 +10,7 @@ import base64
 from pathlib import Path
 
 from course_lib.files import atomic_write
-from courseware.lessons.kit.room_photographs import the_pair
+from courseware.lessons.kit.room_data import the_pair
 from courseware.paths import REPOSITORY
 
 STORED = REPOSITORY / "notebooks/scenes/11_sphere.html"

@@ -19,7 +19,7 @@ from courseware.experiments.intervals import wilson_percent
 from courseware.lessons.kit.display import described
 from courseware.lessons.kit.live_figure import LiveFigure
 from courseware.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
-from courseware.lessons.kit.room_photographs import the_image, the_pair
+from courseware.lessons.kit.room_data import the_image, the_pair
 from courseware.lessons.lesson_12 import measures
 from courseware.plots.figures import BLACK, BLUE, ORANGE, VERMILION, YELLOW, line_style, new_figure
 from courseware.plots.panorama_drawing import CLASS_STYLES, class_style, draw_box, panorama

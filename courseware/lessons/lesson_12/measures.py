@@ -18,7 +18,7 @@ from course_lib.spherical_stereo.detection.seam import extend_seam, select_on_ci
 from course_lib.spherical_stereo.panorama import read_panorama
 from courseware.experiments.room_evaluation import match_detections
 from courseware.lessons.kit.progress_bar import progress
-from courseware.lessons.kit.room_photographs import room_map, room_recording, the_image, the_pair
+from courseware.lessons.kit.room_data import room_map, room_recording, the_image, the_pair
 from courseware.paths import data_path
 from courseware.simulation.room import stereo_recording
 from courseware.simulation.room.stereo_recording import TrueObject

@@ -12,7 +12,7 @@ from course_lib.spherical_stereo.matching.epipolar import EPIPOLAR_TOLERANCE
 from courseware.lessons.kit.display import described
 from courseware.lessons.kit.live_figure import LiveFigure
 from courseware.lessons.kit.panel import Choice, Drawing, Panel, Slider, Switch
-from courseware.lessons.kit.panorama_features import scene
+from courseware.lessons.kit.room_data import scene
 from courseware.lessons.lesson_13 import matching
 from courseware.plots.figures import BLUE, SKY_BLUE, VERMILION, YELLOW, new_figure
 from courseware.plots.panorama_drawing import draw_box

@@ -11,7 +11,7 @@ from course_lib.spherical_stereo.matching import epipolar
 from course_lib.spherical_stereo.matching.features import PanoramaFeatures, detect_features, inside_box
 from course_lib.spherical_stereo.matching.object_matching import pair_by_most_matches
 from course_lib.spherical_stereo.panorama import azimuth_elevation_of_pixel
-from courseware.lessons.kit.panorama_features import Scene, Side
+from courseware.lessons.kit.room_data import Scene, Side
 
 PLACES = ("02_a", "06_b", "08_a", "09_a")  # where the ways are compared: all over the room
 WAYS = ("both", "AKAZE alone", "geometry alone")

@@ -4,8 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from courseware.lessons.kit.display import described
-from courseware.lessons.kit.room_observations import MatchingScene
-from courseware.lessons.kit.room_photographs import room_map
+from courseware.lessons.kit.room_data import MatchingScene, room_map
 from courseware.lessons.lesson_15.scores import SOFAS
 from courseware.plots import figures
 from courseware.plots.panorama_drawing import class_style

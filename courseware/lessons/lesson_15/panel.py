@@ -7,8 +7,7 @@ from matplotlib.colors import PowerNorm
 from course_lib.spherical_stereo.semantic_map.association import PenaltyWeights, associate_greedy
 from courseware.lessons.kit.live_figure import LiveFigure
 from courseware.lessons.kit.panel import Choice, Drawing, Panel, Slider
-from courseware.lessons.kit.room_observations import room_scenes
-from courseware.lessons.kit.room_photographs import room_map
+from courseware.lessons.kit.room_data import room_map, room_scenes
 from courseware.lessons.lesson_15.figures import short_names
 from courseware.plots import figures
 from courseware.plots.room_figures import map_axes

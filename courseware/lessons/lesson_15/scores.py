@@ -11,8 +11,7 @@ from course_lib.spherical_stereo.pose.rigid_fit import RigidFitError, fit_rigid_
 from course_lib.spherical_stereo.semantic_map.association import PenaltyWeights, associate_greedy, penalty_table
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 from courseware.experiments.intervals import bootstrap_percent
-from courseware.lessons.kit.room_observations import MatchingScene, room_scenes
-from courseware.lessons.kit.room_photographs import room_map
+from courseware.lessons.kit.room_data import MatchingScene, room_map, room_scenes
 
 PAIR = "03_b"  # thirteen of fourteen objects in view, nothing special (chosen)
 SOFAS = (0, 1, 2)  # their lines in the map

@@ -6,8 +6,7 @@ import numpy as np
 
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, fit_rigid_2d
-from courseware.lessons.kit.room_observations import in_body_frame, room_scenes
-from courseware.lessons.kit.room_photographs import room_map, room_recording
+from courseware.lessons.kit.room_data import in_body_frame, room_map, room_recording, room_scenes
 
 SIGMA = 0.1  # metres, noise of a point in each direction where the lesson needs one (chosen: about what boxes give)
 ROOM, LINE, MIRRORED = "in a room", "in a line", "mirrored"

@@ -7,7 +7,7 @@ from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, RigidFitError, fit_rigid_2d
 from courseware.lessons.kit.live_figure import LiveFigure
 from courseware.lessons.kit.panel import Choice, Drawing, Panel, Slider
-from courseware.lessons.kit.room_observations import in_body_frame
+from courseware.lessons.kit.room_data import in_body_frame
 from courseware.lessons.lesson_16.fits import LANDMARKS, MIRRORED, ROOM, landmarks_of, pose_error, residual_over_heading
 from courseware.plots import figures
 

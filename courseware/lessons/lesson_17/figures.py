@@ -11,7 +11,7 @@ from courseware.experiments.room_evaluation import KINDS, PAPER_TABLE_5, UNABLE
 from courseware.lessons.kit.display import described
 from courseware.lessons.kit.live_figure import LiveFigure
 from courseware.lessons.kit.panel import Choice, Drawing, Panel, Slider
-from courseware.lessons.kit.room_photographs import room_map, room_recording
+from courseware.lessons.kit.room_data import room_map, room_recording
 from courseware.lessons.lesson_17.room_runs import StoredRoom, exact_results, is_matched_rightly, thinned
 from courseware.plots import figures
 from courseware.plots.room_figures import ESTIMATE, draw_pose, map_axes

@@ -12,8 +12,7 @@ from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from course_lib.spherical_stereo.semantic_map.association import Observation, penalty
 from courseware.experiments import room_evaluation
 from courseware.experiments.room import PairResult, run_experiment
-from courseware.lessons.kit.room_observations import in_body_frame
-from courseware.lessons.kit.room_photographs import room_map, room_recording
+from courseware.lessons.kit.room_data import in_body_frame, room_map, room_recording
 from courseware.paths import data_path
 
 NAMES = {"images": "ours, from images", "exact_boxes": "ours, exact boxes"}

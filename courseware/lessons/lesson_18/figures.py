@@ -16,8 +16,7 @@ from course_lib.beyond.look_alikes.hypotheses import MAP_SIGMA, PoseHypothesis, 
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 from courseware.experiments.ambiguity import AmbiguityMap
 from courseware.lessons.kit.display import described
-from courseware.lessons.kit.room_observations import MatchingScene
-from courseware.lessons.kit.room_photographs import room_map
+from courseware.lessons.kit.room_data import MatchingScene, room_map
 from courseware.plots import figures
 from courseware.plots.panorama_drawing import class_style
 from courseware.plots.room_figures import draw_ambiguity, draw_pose, map_axes

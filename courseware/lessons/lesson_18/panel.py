@@ -11,8 +11,7 @@ from course_lib.beyond.look_alikes.consistent import rank_poses
 from course_lib.beyond.look_alikes.hypotheses import PoseHypothesis, Scene, scene_of
 from courseware.lessons.kit.live_figure import LiveFigure
 from courseware.lessons.kit.panel import Choice, Drawing, Panel, Slider
-from courseware.lessons.kit.room_observations import MatchingScene, room_scenes
-from courseware.lessons.kit.room_photographs import room_map
+from courseware.lessons.kit.room_data import MatchingScene, room_map, room_scenes
 from courseware.lessons.lesson_18.figures import RING, SIGMAS, laid_on_the_map
 from courseware.lessons.lesson_18.scenes import mirrored, thinned
 from courseware.plots import figures

@@ -11,7 +11,7 @@ from course_lib.spherical_stereo.semantic_map.association import Observation
 from course_lib.spherical_stereo.semantic_map.semantic_map import Landmark, SemanticMap
 from courseware.experiments.ambiguity import stereo_covariance
 from courseware.experiments.look_alikes import measured_motion
-from courseware.lessons.kit.room_observations import MatchingScene, in_body_frame, room_scenes
+from courseware.lessons.kit.room_data import MatchingScene, in_body_frame, room_scenes
 
 # Chosen pairs of photographs: the assignment by colour takes each sofa for another one; and four observations that are
 # all matched rightly, with a place that is off by more than in any other of 200 such draws whose pose was given out.

@@ -14,8 +14,7 @@ from course_lib.spherical_stereo.panorama import StereoRig
 from course_lib.spherical_stereo.pose.rigid_fit import Pose2D, fit_rigid_2d
 from courseware.experiments.look_alikes import KINDS, NOWHERE, Answer, judged, measured_motion
 from courseware.lessons.kit.progress_bar import progress
-from courseware.lessons.kit.room_observations import MatchingScene, room_scenes
-from courseware.lessons.kit.room_photographs import room_map
+from courseware.lessons.kit.room_data import MatchingScene, room_map, room_scenes
 from courseware.lessons.lesson_18.scenes import half_seen
 
 

@@ -8,7 +8,7 @@ from courseware.lessons.kit.display import described
 from courseware.lessons.kit.live_figure import LiveFigure
 from courseware.lessons.kit.panel import Choice, Drawing, Panel, Slider
 from courseware.lessons.lesson_20.own_panoramas import PanoramaPair
-from courseware.lessons.lesson_20.readings import READINGS, STAND_IN_FRAMES, Checker, Compared, Recording, recording
+from courseware.lessons.lesson_20.recordings import READINGS, STAND_IN_FRAMES, Checker, Compared, Recording, recording
 from courseware.plots import figures
 from courseware.plots.panorama_drawing import draw_box, panorama
 

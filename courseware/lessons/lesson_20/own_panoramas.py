@@ -14,7 +14,7 @@ from course_lib.spherical_stereo.pose.localization import Localization
 from course_lib.spherical_stereo.ranging.object_positions import MeasuredObject, measure_objects
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
 from courseware.experiments.room import exact_detections
-from courseware.lessons.kit.room_photographs import room_map, room_recording
+from courseware.lessons.kit.room_data import room_map, room_recording
 
 STAND_IN_PAIR = 3  # of the room's experiment 1: most objects in view (chosen)
 NEAR = 0.02  # radians of vertical disparity: nearer than fifty baselines, so that a row matters little (chosen)

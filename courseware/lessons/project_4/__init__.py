@@ -1,3 +1,1 @@
 """Project P4, an unknown camera from raw frames to a report: its sessions, its stages, and what it is measured by."""
-
-from courseware.lessons.project_4.sessions import REPEAT, room_figure, session

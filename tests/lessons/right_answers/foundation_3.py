@@ -3,7 +3,7 @@
 import numpy as np
 from filterpy.kalman import KalmanFilter
 
-from courseware.lessons.foundation_3 import kalman_update
+from courseware.lessons.foundation_3.fusion import kalman_update
 
 
 def one_after_the_other(means, covariances):

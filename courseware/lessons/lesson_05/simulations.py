@@ -8,7 +8,7 @@ import numpy as np
 from course_lib.depth_mcl.motion import propagate
 from course_lib.depth_mcl.particle_filter import initial_particles
 from course_lib.geometry import pose_matrix, state_from_optical_pose
-from courseware.lessons.kit.corridor_views import wagon_run
+from courseware.lessons.kit.corridor_data import wagon_run
 
 Walk = namedtuple("Walk", "clouds nearest")
 

@@ -1,4 +1,4 @@
-"""Load the corridor's map and the wagon's run for the lessons, and draw its walls in plans and side views."""
+"""Load the corridor's map and the wagon's run, and draw walls in plans and side views."""
 
 import functools
 

@@ -16,7 +16,7 @@ from course_lib.depth_mcl.motion import TANGENT_SPACE
 from course_lib.depth_mcl.sequence import read_sequence
 from course_lib.geometry import optical_pose, state_from_optical_pose
 from courseware.lessons.kit.box_world import box_map
-from courseware.lessons.kit.corridor_views import corridor_map
+from courseware.lessons.kit.corridor_data import corridor_map
 from courseware.lessons.kit.progress_bar import progress
 from courseware.paths import data_path
 

@@ -14,8 +14,7 @@ from course_lib.spherical_stereo.ranging import triangulation
 from course_lib.spherical_stereo.ranging.object_positions import disparity_distance
 from courseware.experiments.room_evaluation import counts_as_object
 from courseware.lessons.kit.intervals import median_text
-from courseware.lessons.kit.panorama_features import scene
-from courseware.lessons.kit.room_photographs import pair_of, room_map, room_recording
+from courseware.lessons.kit.room_data import pair_of, room_map, room_recording, scene
 from courseware.simulation.room.stereo_recording import StereoPair, StereoRecording, TrueObject
 
 PLACES = ("02_a", "06_b", "08_a", "09_a")  # of experiment_2, where features are matched: all over the room

@@ -13,7 +13,7 @@ from course_lib.geometry import pose_matrix
 from course_lib.recordings import Run, run_sequence
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap, mesh_endings
-from courseware.lessons.kit.corridor_views import corridor_map
+from courseware.lessons.kit.corridor_data import corridor_map
 from courseware.paths import data_path
 
 STAND_IN_FRAMES = 24  # of the corridor run that was carried by hand: as many as the panel steps through (chosen)
