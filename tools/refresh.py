@@ -25,7 +25,8 @@ from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernel
 from course_lib.files import atomic_write, temporary_folder
 from courseware.commands.saved_panels import drop_widgets
 from courseware.commands.test import OFFLINE_STARTUP
-from courseware.lessons.kit.exercises import Exercise, find_exercise
+from courseware.lessons.kit.exercise import Exercise
+from courseware.lessons.kit.exercises import find_exercise
 from courseware.paths import REPOSITORY, STORE_SCENES, numbered_paths
 from tools.pace import write_minutes
 from tools.series_pictures import write_picture

@@ -19,7 +19,8 @@ from courseware.classroom.answers import AnswerFormatError, decode, one_line
 from courseware.classroom.points import SCORE_POINTS, earned, lesson_of, most_of, secret
 from courseware.classroom.sandbox import Limits, Run, Sandbox
 from courseware.classroom.worlds import graded_project, score_points, score_sentence
-from courseware.lessons.kit.exercises import Exercise, find_exercise, right_on
+from courseware.lessons.kit.exercise import Exercise
+from courseware.lessons.kit.exercises import find_exercise, right_on
 from courseware.lessons.kit.general_mistakes import general_mistake
 from courseware.lessons.kit.hints import known_mistake
 from courseware.lessons.kit.projects import AnswerError, Outcome, Project

@@ -4,8 +4,6 @@ A slip changes the values that the solution returns (degrees for radians), the v
 exchanged), or one place of its code (`axis=0` for `axis=1`). A sentence belongs to each.
 """
 
-from __future__ import annotations
-
 import ast
 import copy
 import functools
@@ -13,16 +11,13 @@ import inspect
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from itertools import accumulate
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from courseware.lessons.kit.attempt import TIME_LIMIT, attempt
+from courseware.lessons.kit.exercise import Exercise
 from courseware.lessons.kit.mistakes import compiled
 from courseware.lessons.kit.values import agree, as_numbers, is_row_of, parts
-
-if TYPE_CHECKING:  # because `exercises` imports this module
-    from courseware.lessons.kit.exercises import Exercise
 
 SIGN = "Look at the signs: one of them is the other way round."
 DEGREES = "Look at the units: are these degrees where radians are asked, or the reverse?"

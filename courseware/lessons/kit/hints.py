@@ -1,18 +1,13 @@
 """Explain a wrong answer in a sentence: a known mistake, a wrong order, type or shape, a NaN or an infinity."""
 
-from __future__ import annotations
-
 import copy
 import itertools
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from courseware.lessons.kit.exercise import Exercise
 from courseware.lessons.kit.general_mistakes import general_mistake, gives
 from courseware.lessons.kit.values import agree, agree_all, as_numbers, is_row_of, parts, shaped
-
-if TYPE_CHECKING:  # because `exercises` imports this module
-    from courseware.lessons.kit.exercises import Exercise
 
 MISSING_RETURN = "Your function returns None: does every way through it end in `return`?"
 

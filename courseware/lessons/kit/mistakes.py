@@ -11,8 +11,10 @@ Several edits above one hint are several ways to make the same mistake.
 """
 
 import inspect
+import re
 import textwrap
 from collections.abc import Callable
+from pathlib import Path
 from typing import NamedTuple
 
 ARROW, JOINED, WHOLE_BODY = " =>", " and also ", "..."
@@ -27,6 +29,15 @@ class Mistake(NamedTuple):
 
 class EditError(ValueError):
     """An edit does not fit the solution's text, or a hint is missing."""
+
+
+def read_hints(path: Path) -> dict[str, str]:
+    """Return the mistakes of each exercise in a file of hints: the text below its heading `[06.1]`."""
+    before, *parts = re.split(r"^\[(\w+\.\d+)\]$", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    found = dict(zip(parts[::2], parts[1::2], strict=True))
+    if before.strip() or 2 * len(found) < len(parts):
+        raise EditError(f"{path.name}: write one heading such as [06.1] for each exercise, and its mistakes below it")
+    return found
 
 
 def read_mistakes(solution: Callable, text: str) -> tuple[Mistake, ...]:

@@ -5,9 +5,9 @@ import re
 import numpy as np
 import pytest
 
+from courseware.lessons.kit.exercise import Exercise
 from courseware.lessons.kit.exercises import (
     NOT_ATTEMPTED,
-    Exercise,
     UnknownExerciseError,
     Verdict,
     check,

@@ -5,7 +5,8 @@ import pytest
 
 from course_lib.geometry import wrap_angle
 from courseware.lessons.kit import general_mistakes as general
-from courseware.lessons.kit.exercises import Exercise, judge
+from courseware.lessons.kit.exercise import Exercise
+from courseware.lessons.kit.exercises import judge
 
 
 def turned(R, points, theta):

@@ -2,7 +2,8 @@
 
 import pytest
 
-from courseware.lessons.kit.mistakes import EditError, edited, read_mistakes
+from courseware.lessons.kit import exercises
+from courseware.lessons.kit.mistakes import EditError, edited, read_hints, read_mistakes
 
 OFFSET = 1.0
 
@@ -46,3 +47,24 @@ def test_dots_stand_for_the_whole_body_which_may_call_the_right_function_and_the
 def test_an_edit_that_does_not_fit_is_refused(text, words):
     with pytest.raises(EditError, match=words):
         read_mistakes(line, text)
+
+
+def test_a_file_of_hints_has_one_heading_for_each_exercise_and_the_mistakes_stand_below(tmp_path):
+    (tmp_path / "lesson_99.hints").write_text("[99.1]\nold => new\nA hint.\n\n[99.2]\na[1] => a[0]\nThe first.\n")
+    found = read_hints(tmp_path / "lesson_99.hints")
+    assert {number: text.strip() for number, text in found.items()} == {
+        "99.1": "old => new\nA hint.",
+        "99.2": "a[1] => a[0]\nThe first.",
+    }
+    for text in ("old => new\nA hint.\n[99.1]\n", "[99.1]\n[99.1]\n"):
+        (tmp_path / "lesson_99.hints").write_text(text)
+        with pytest.raises(EditError, match=r"lesson_99\.hints: write one heading"):
+            read_hints(tmp_path / "lesson_99.hints")
+
+
+def test_hints_of_an_exercise_that_there_is_not_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(exercises, "ANSWERS", tmp_path)
+    (tmp_path / "lesson_06.py").touch()
+    (tmp_path / "lesson_06.hints").write_text("[06.77]\nold => new\nA hint.\n")
+    with pytest.raises(EditError, match=r"lesson_06\.hints: there is no exercise 06\.77"):
+        exercises.lesson_exercises.__wrapped__("06")
