@@ -41,6 +41,7 @@ class Verdict(NamedTuple):
 
 SIGNS = {"right": ("\u2713", 32), "wrong": ("\u2717", 31)}  # and their colours, by number (ANSI)
 
+SEE_CHECK = "Not right. The exercise's own check in the notebook says more."
 NOT_ATTEMPTED = Verdict("not attempted", "not attempted yet. Replace the `...` above, then run both cells.")
 
 
@@ -149,20 +150,25 @@ def right_on(exercise: Exercise, arguments: list[tuple], answers: list) -> list[
     return max(found, key=sum)
 
 
-def fault(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
-    """Return a sentence about a fault in the answers, or None. It shows neither inputs nor right values."""
+def fault(exercise: Exercise, arguments: list[tuple], answers: list, details: bool = True) -> str | None:
+    """Return a sentence about a fault in the answers, or None. It shows neither inputs nor right values.
+
+    details: whether it may describe the answers (`hint`). Without them, a sentence of `verify` with a number in it is
+    left out, because the number may be a value.
+    """
     if exercise.verify is not None:
         for given, answer in zip(arguments, answers, strict=True):
             if answer is None:
                 return MISSING_RETURN
             if (sentence := exercise.verify(copy.deepcopy(given), answer)) is not None:
-                return known_mistake(exercise, arguments, answers) or sentence
+                safe = details or not any(map(str.isdigit, sentence))
+                return known_mistake(exercise, arguments, answers) or (sentence if safe else SEE_CHECK)
         return None
     for allowed in (exercise.solution, *exercise.others):
         values = [allowed(*copy.deepcopy(given)) for given in arguments]
         if agree_all(answers, values, exercise.tolerance):
             return None
-    return hint(exercise, arguments, answers)
+    return hint(exercise, arguments, answers, details)
 
 
 def is_stub(function: Callable) -> bool:
