@@ -16,7 +16,7 @@ from courseware.lessons.kit.exercises import find_exercise, judge, lesson_exerci
 from courseware.lessons.kit.mistakes import read_hints
 from courseware.paths import REPOSITORY, foundation_paths, notebook_paths, project_paths
 from tools.bench_tables import capacity_sentence, lessons_rows
-from tools.refresh import solution_cell, stub_cell
+from tools.refresh import solution_cell, stub_cell, with_example
 
 TEACHING = (REPOSITORY / "TEACHING.md").read_text(encoding="utf-8")
 PATHS = {path.name[:2]: path for path in [*notebook_paths(), *project_paths()]}
@@ -165,4 +165,4 @@ def test_the_example_exercise_is_one(tmp_path):
     for mistake in exercise.known:
         assert mistake.hint in judge(exercise, mistake.functions[0]).message
     assert f'check("{exercise.number}", greatest_depth)' in cells[2]
-    np.testing.assert_allclose(exercise.solution(np.array([0.012, 0.12]), 220, 1.32), [2, 20])
+    assert cells[0] == with_example(cells[0], exercise)

@@ -63,19 +63,22 @@ EXERCISES = [
     Exercise("F1.1", carry, weighted, "warm-up", cases={
         "one fits": lambda rng: (uneven(rng, 4), np.array([0, 0.3, 0, 0])),
         "all fit alike": lambda rng: (uneven(rng, 5), np.full(5, 0.2)),
-    }),
+    }, example=(([0.5, 0.25, 0.25], [0.1, 0.4, 0.2]), ([0.25, 0.5, 0.25], 2.667))),
     Exercise("F1.2", correct, on_demand, cases={
         "all equal": lambda rng: (rng.normal(size=4), np.full(4, 0.25), np.full(4, 0.3), 0.4, 0.5),
         "one has nearly all": lambda rng: (rng.normal(size=5), np.full(5, 0.2), 10.0 ** -np.arange(5), 0.3, 0.5),
         "never": lambda rng: (rng.normal(size=5), uneven(rng, 5), 10.0 ** -np.arange(5), 0.3, 0.0),
         "every frame": lambda rng: (rng.normal(size=6), uneven(rng, 6), rng.uniform(0.2, 1, 6), 0.6, 1.1),
         "the old weights decide": lambda rng: (rng.normal(size=4), np.array([9, 1, 1, 1]) / 12, np.ones(4), 0.5, 0.5),
-    }),
+    }, example=(
+        ([1, 2, 3, 4], [0.25, 0.25, 0.25, 0.25], [0.1, 0.1, 0.1, 0.7], 0.5, 0.5),
+        ([2, 4, 4, 4], [0.25, 0.25, 0.25, 0.25]),
+    )),
     Exercise("F1.3", share_left, lambda rng: (
         rng.uniform(0.2, 2) ** 2, rng.normal(0, 2), rng.uniform(0.2, 1.5),
     ), "challenge", cases={
         "in the middle": lambda rng: (rng.uniform(0.2, 2) ** 2, 0.0, rng.uniform(0.2, 1.5)),
         "a sharp sensor": lambda rng: (1.0, rng.normal(0, 0.2), 0.01),
         "all at one place": lambda rng: (0.0, 1.0, 0.5),
-    }),
+    }, example=((1, 2, 1), 0.4446)),
 ]

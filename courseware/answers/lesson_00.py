@@ -68,10 +68,11 @@ EXERCISES = [
     Exercise("00.1", depth_difference, two_images, "warm-up", cases={
         "a gap and a hole": lambda rng: (np.array([[np.nan, 2.0, 3.0]]), np.array([[2.0, 2.5, np.inf]])),
         "equal images": lambda rng: (np.full((2, 3), 4.0), np.full((2, 3), 4.0)),
-    }),
+    }, example=(([2.0, 3.0, np.nan], [2.5, 2.9, 4.0]), [0.5, 0.1, np.nan])),
     Exercise("00.2", difference_of_vote,
              lambda rng: (rng.uniform(0.05, 0.95, (3, 4)), rng.uniform(0.05, 0.5)),
-             cases={"votes of 0 and 1": lambda rng: (np.array([0.1, 0.6, 1.0, 0.0, 0.5]), 0.1)}),
+             cases={"votes of 0 and 1": lambda rng: (np.array([0.1, 0.6, 1.0, 0.0, 0.5]), 0.1)},
+             example=(([1, 0.5, 0.25, 0], 0.1), [0, 0.1, 0.3, np.inf])),
     Exercise("00.3", find_the_camera, a_search, "challenge", verify=off_the_top, cases={
         "a far start": lambda rng: a_search(rng, rng.choice([-1, 1], 3)),
         "start at the top": lambda rng: a_search(rng, 0),

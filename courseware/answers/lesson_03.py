@@ -89,7 +89,7 @@ EXERCISES = [
     ), "warm-up", cases={
         "nothing drawn": lambda rng: (np.ones((3, 4)), 0.125, 30.0),
         "a corridor's planes": lambda rng: (np.linspace(0.0, 0.9999, 9)[None], 0.125, 10.0),
-    }),
+    }, example=(([0, 0.5, 0.9, 1], 0.1, 30), [0.1, 0.199, 0.971, np.inf])),
     Exercise("03.2", depth_on_edge, lambda rng: (
         *rng.permutation(rng.uniform([0.5, 4.0], [3.0, 20.0])), np.array([0.0, 1.0, *rng.uniform(0.05, 0.95, 6)]),
     ), cases={"ends equally far": lambda rng: (3.0, 3.0, np.linspace(0, 1, 5))}),
@@ -99,7 +99,7 @@ EXERCISES = [
         "depths of near and far themselves":  # and a pixel that nothing covers
             lambda rng: (np.array([[[0.5, 8.0, np.inf]], [[2.0, 9.0, np.inf]], [[0.4, np.inf, 0.1]]]), 0.5, 8.0),
         "one surface": lambda rng: (np.array([[[0.5, 3.0, 12.0, np.inf]]]), 0.75, 10.0),
-    }),
+    }, example=(([[[0.3]], [[5]], [[2]]], 0.5, 10), [[2]])),
     Exercise("03.4", cut_at_near, triangles, "challenge", verify=off_the_cut, cases={
         "a corner on the plane": lambda rng: (triangle(rng, 0.1, -1.0, 3.0), 0.1),
     }),

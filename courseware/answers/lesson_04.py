@@ -84,7 +84,7 @@ EXERCISES = [
     Exercise("04.1", range_to_depth, range_image, "warm-up", cases={
         "the task's ray": lambda rng: (np.array([[5.0]]), np.array([[[0.75, 0.0, 1.0]]])),
         "nothing measured": lambda rng: (np.full((3, 4), np.nan), DepthCamera.from_fov(4, 3, 60, 45).rays()),
-    }),
+    }, example=(([[5]], [[[0.75, 0, 1]]]), [[4]])),
     Exercise("04.2", range_from_two, lambda rng: two_readings(
         rng, f := rng.uniform(14e6, 16e6), f * rng.uniform(1.25, 1.4),
     ), cases={
@@ -99,5 +99,5 @@ EXERCISES = [
     # The tolerance of 04.4 lets a simulation with a hundred thousand draws pass, that of 04.3 a search on a fine grid.
     Exercise("04.4", nearest_of, lambda rng: (int(rng.integers(3, 41)),), "challenge", tolerance=0.004, cases={
         "one point": lambda rng: (1,), "two points": lambda rng: (2,), "sixteen points": lambda rng: (16,),
-    }),
+    }, example=((2,), (-0.564, 0.826))),
 ]

@@ -103,7 +103,7 @@ EXERCISES = [
     Exercise("05.1", spread_after, lambda rng: (*rng.uniform(0, 0.6, (2, 6)), rng.integers(2, 60)), "warm-up", cases={
         "no frame": lambda rng: (*rng.uniform(0.1, 0.5, (2, 6)), 0),
         "no noise in yaw": lambda rng: (rng.uniform(0.1, 0.5, 6), rng.uniform(0.1, 0.5, 6) * [1, 1, 1, 1, 1, 0], 9),
-    }),
+    }, example=((0.3, 0.1, 16), 0.5)),
     Exercise("05.2", propagate_own_axes, particles_and_draws, cases={"four headings": four_headings}),
     Exercise("05.3", share_near, cloud_and_state, cases={
         "yaws at the seam": yaws_at_the_seam,
@@ -115,8 +115,8 @@ EXERCISES = [
         "a sure sensor": lambda rng: (np.full(6, 1 / 6), np.array([0, 1.0]), np.arange(6) % 3 == 0, False, 1.0, 0.0),
         "more moves than cells": lambda rng: (np.ones(4) / 4, np.ones(7) / 7, np.arange(4) == 2, False, 0.9, 0.2),
         "at rest": lambda rng: corridor_with_doors(rng, n_moves=1),
-    }),
+    }, example=(([0.5, 0.5, 0], [0, 1], [False, True, False], True, 0.8, 0.2), [0, 0.8, 0.2])),
     Exercise("05.5", min_sigma, lambda rng: (
         rng.uniform(0.02, 0.3), int(rng.integers(50, 2000)), int(rng.integers(20, 500)), rng.uniform(0.6, 0.99),
-    ), "challenge", cases={"one frame": lambda rng: (0.1, 20, 1, 0.9)}),
+    ), "challenge", cases={"one frame": lambda rng: (0.1, 20, 1, 0.9)}, example=((0.1, 20, 1, 0.9), 0.0811)),
 ]

@@ -80,20 +80,20 @@ def weighted_samples(rng: np.random.Generator) -> tuple:
 EXERCISES = [
     Exercise("06.1", raw_score, lambda rng: (rng.uniform(0, 1, 5), rng.uniform(0.01, 1.0)), "warm-up", cases={
         "nobody or all hidden": lambda rng: (np.array([0.0, 1.0, 0.0, 0.5]), 0.1),
-    }),
+    }, example=(([0, 0.5, 1], 0.1), [0.833, 0.44, 0.048])),
     Exercise("06.2", weigh_rightly, images_with_holes, cases={
         "a lucky pixel": a_lucky_pixel,
         "all alike": lambda rng: (np.full((2, 3), 2.0), np.full((4, 2, 3), 2.1), 0.1, 0.01),
         "nothing measured": lambda rng: (np.full((2, 3), np.nan), rng.uniform(1, 6, (5, 2, 3)), 0.1, 0.3),
-    }),
+    }, example=(([[2, 2]], [[[2, np.inf]], [[2.1, 2.1]], [[2, 2.1]]], 0.1, 1), [0.212, 0.212, 0.576])),
     Exercise("06.3", min_likelihood, lambda rng: (
         rng.uniform(100, 900, int(rng.integers(5, 12))), rng.uniform(0.05, 0.6),
     ), cases={
         "the paper's beta": lambda rng: (rng.uniform(600, 900, 9), 0.01),
         "a large beta": lambda rng: (rng.uniform(100, 900, 6), 1.5),  # the worst particle has more than one half
-    }),
+    }, example=(([100, 300, 500], 0.5), 333.5)),
     Exercise("06.4", importance_mean, weighted_samples, "challenge", cases={
         "target is proposal": lambda rng: (x := rng.normal(0, 1, 30), norm.pdf(x), norm.pdf(x)),
         "one outweighs all": lambda rng: (x := np.linspace(-2, 2, 9), 1e-30 * norm.pdf(x, 1.5, 0.2), norm.pdf(x)),
-    }),
+    }, example=(([0, 1, 2], [1, 2, 1], [1, 1, 1]), (1.0, 0.354))),
 ]

@@ -67,16 +67,17 @@ EXERCISES = [
         "about zero": lambda rng: (np.deg2rad([-20, 5, 10]), np.arange(1, 4) / 6),
         "all around": lambda rng: (np.deg2rad([0, 90, 170, -90]), np.arange(1, 5) / 10),
         "all the same way": lambda rng: (np.deg2rad([30, 30, 30]), np.arange(1, 4) / 6),
-    }),
-    Exercise("07.2", residual_parts, uneven_weights, cases=WHOLE_NUMBERS),
+    }, example=(([3.0, -3.0], [0.75, 0.25]), (3.07, 0.9925))),
+    Exercise("07.2", residual_parts, uneven_weights, cases=WHOLE_NUMBERS,
+             example=(([0.5, 0.3, 0.2],), ([1, 0, 0], [0.25, 0.45, 0.3]))),
     Exercise("07.3", expected_survivors, uneven_weights, cases=WHOLE_NUMBERS | {
         "all equal": lambda rng: (np.full(n := int(rng.integers(3, 9)), 1 / n),),
         "one has all": lambda rng: (rng.permutation(np.eye(int(rng.integers(3, 9)))[0]),),
-    }),
+    }, example=(([0.5, 0.5],), 1.5)),
     Exercise("07.4", stratified_error, lambda rng: (
         w := uneven_weights(rng)[0], rng.normal(rng.uniform(-3, 3), 1.0, len(w)),
     ), "challenge", cases={
         "three particles": lambda rng: (np.array([0.5, 0.3, 0.2]), rng.permutation(np.arange(3.0))),
         "light ones last": lambda rng: (np.array([0.22] * 2 + [0.07] * 8), rng.normal(size=10)),
-    }),
+    }, example=(([0.5, 0.3, 0.2], [0, 1, 2]), 0.2333)),
 ]

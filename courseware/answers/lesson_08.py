@@ -78,11 +78,11 @@ EXERCISES = [
         "a single estimate": lambda rng: (rng.normal(size=(1, 3)), rng.normal(size=(2, 3))),
         # The nearest point in space, on the hump, is not the nearest on the floor plan.
         "a hump in the floor": lambda rng: (np.array([[1.3, 0.1, 1]]), np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0.9]])),
-    }),
+    }, example=(([[1.0, 0.4, 1.0]], [[0, 0, 0], [1, 0, 0], [2, 0, 0]]), [0.4])),
     Exercise("08.2", table_row, errors_of_a_run, tolerance=1e-9, cases={
         # No scatter, and yet an error: just the limit.
         "all errors equal": lambda rng: (np.full(int(rng.integers(3, 9)), 0.30),),
-    }),
+    }, example=(([0.1, 0.1, 0.1, 0.5],), (0.1, 0.265, 0.75))),
     Exercise("08.3", lost_since, scores_with_dips, cases={
         # Rows that are one too short, with single good scores between them: nothing may be carried over.
         "short dips only": lambda rng: (np.array([0.2 if c == "l" else 0.7 for c in "llllhllllhhhllhlllh"]), 0.5, 5),
@@ -92,7 +92,7 @@ EXERCISES = [
         "fewer scores than patience": lambda rng: (np.array([0.1, 0.2]), 0.5, 4),
         "lost from the start": lambda rng: (np.full(6, 0.1), 0.5, 3),
         "never low": lambda rng: (np.full(8, 0.9), 0.5, 2),
-    }),
+    }, example=(([0.6, 0.4, 0.6, 0.4, 0.3, 0.3], 0.45, 2), 4)),
     Exercise("08.4", effective_frames, length_and_likeness, "challenge", cases={
         "independent frames": lambda rng: length_and_likeness(rng, 0, 0),
         "all the same": lambda rng: length_and_likeness(rng, 1, 1),
@@ -100,5 +100,5 @@ EXERCISES = [
         "a below zero": lambda rng: length_and_likeness(rng, -0.8, -0.2),
         "four frames": lambda rng: (4, 0.5),
         "a long run": lambda rng: (304, 0.99),
-    }),
+    }, example=((4, 0.5), 1.939)),
 ]

@@ -113,7 +113,7 @@ EXERCISES = [
     Exercise("09.1", particles_for, lambda rng: tuple(rng.integers([20, 1, 1], [1000, 7, 7]).tolist()), "warm-up", {
         "fewer dimensions": lambda rng: (200, 3, 2),
         "the same dimension": lambda rng: (int(rng.integers(20, 1000)), 4, 4),
-    }),
+    }, example=((200, 3, 6), 40000)),
     Exercise("09.2", mean_rotation, weighted_rotations, verify=unbalanced, cases={
         "one rotation": lambda rng: (Rotation.from_rotvec([[0.3, -2.0, 1.0]]).as_matrix(), np.ones(1)),
         "equal rotations": lambda rng: (Rotation.from_rotvec([[0.1, 0.4, 2.5]] * 4).as_matrix(), np.arange(1, 5) / 10),

@@ -99,10 +99,10 @@ EXERCISES = [
         # The numbers are at the very start of four free cells: cutting off differs from rounding up.
         "numbers on the borders": lambda rng: (np.array([[False, True, True], [True, False, True]]), 0.5,
                                                np.column_stack([[0.0, 0.25, 0.5, 0.75], rng.random((4, 2))])),
-    }),
+    }, example=(([[False, True], [True, True]], 0.5, [[0.1, 0.5, 0.0], [0.9, 0.5, 0.5]]), [[0.75, 0.0], [0.75, 0.75]])),
     Exercise("10.2", new_shares, falling_scores, cases={
         "the example of the task": lambda rng: (np.array([0.8, 0.8, np.nan, 0.4]), 0.5, 0.1),
-    }),
+    }, example=(([0.8, 0.8, np.nan, 0.4], 0.5, 0.1), [0, 0, 0, 0.211])),
     Exercise("10.3", draws_needed, landings, cases={
         "two bins only": lambda rng: (np.array([7, 7, 7, *[2, 7] * 48, 2]), 20),
         "a new bin at the bound": lambda rng: (np.array([5] * 19 + [9, 5] * 40), 20),
@@ -118,10 +118,10 @@ EXERCISES = [
         "ahead and back": lambda rng: (np.column_stack([np.zeros((4, 2)), [0.1, -0.1, 3.1, -3.1]]),
                                        rng.permutation([0.9, 0.8, 0.6, 0.5]), 0.5, 0.3),
         "one state alone": lambda rng: (np.array([[1.0, 2.0, 3.0]]), np.array([0.7]), 0.5, 0.3),
-    }),
+    }, example=(([[0, 0, 3.1], [0.1, 0, -3.1], [0, 0, 0], [5, 0, 3.1]], [0.7, 0.9, 0.5, 0.6], 0.5, 0.3), [1, 3, 2])),
     Exercise("10.5", search_numbers, lambda rng: (
         int(10 ** rng.uniform(0.7, 4)), float(10 ** rng.uniform(-3, -0.7)), float(rng.uniform(0.9, 0.999)),
     ), "challenge", cases={
         "two bins with a whole number": lambda rng: (2, 0.25, 0.99),
-    }),
+    }, example=((500, 0.05, 0.99), (1497, 0.1922))),
 ]

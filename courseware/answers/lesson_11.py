@@ -87,13 +87,13 @@ EXERCISES = [
         "straight ahead": lambda rng: (-0.5, 319.5, 1280, 640), "straight up": lambda rng: (100.0, -0.5, 1280, 640),
         "a column beyond the right edge": lambda rng: (1290.0, 400.0, 1280, 640),
         "a column beyond the left edge": lambda rng: (-20.0, 400.0, 1280, 640),
-    }),
+    }, example=((959.5, 159.5, 1280, 640), [0.0, 0.707, 0.707])),
     Exercise("11.2", column_gap_deg, two_columns, cases={
         "half a turn": lambda rng: (960.0, 320.0, 1280), "half a turn to the left": lambda rng: (320.0, 960.0, 1280),
         "equal columns": lambda rng: (77.0, 77.0, 1280), "the two edges": lambda rng: (0.0, 1280.0, 1280),
         "u_max of a box across the seam": lambda rng: (1410.0, 130.0, 1280),
         "more than a turn": lambda rng: (10.0, 1900.0, 1280), "nearly two turns": lambda rng: (2500.0, 40.0, 1280),
-    }),
+    }, example=((1260, 20, 1280), -11.25)),
     Exercise("11.3", shortest_stretch, points_of_an_object, cases={
         name: lambda rng, columns=columns: (np.array(columns), 1280) for name, columns in {
             "one point": [300.0], "equal points": [5.0, 5.0, 5.0], "across the seam": [1270.0, 2.0, 1278.0, 18.0],
@@ -101,10 +101,13 @@ EXERCISES = [
             "more than half a turn": [300.0, 700.0, 1000.0, 1250.0],
             "most of them at one end": [300.0, 310.0, 320.0, 330.0, 700.0, 1100.0],
         }.items()
-    }),
+    }, example=(([1270, 2, 1278, 18], 1280), (1270, 1298))),
     Exercise("11.4", knock, knocked, "challenge", tolerance=0.05, cases={
         "no knock": lambda rng: knocked(rng, largest=0.0),
         "points behind": lambda rng: knocked(rng, np.pi + rng.uniform(-0.02, 0.02, 12)),
         "the first point twice": the_first_point_twice,
-    }),
+    }, example=(
+        ([[640, 320], [320, 400], [1270, 250]], [[642.85, 321.04], [322.41, 401.79], [1273.48, 248.87]], 1280, 640),
+        (0.5, -0.3, 0.8),
+    )),
 ]

@@ -153,7 +153,7 @@ EXERCISES = [
             "side by side": ([100.0, 300, 200, 400], [200.0, 300, 300, 400]),
             "far apart": ([100.0, 300, 200, 400], [900.0, 450, 950, 500]),
         }.items()
-    }),
+    }, example=(([1200, 300, 1300, 400], [0, 300, 20, 400], 1280), 0.2)),
     Exercise("12.3", surest, answers_of_a_network, cases={
         "a chain of overlaps": lambda rng: squares([0, 4, 8], [0, 0, 0], [0.9, 0.8, 0.7], 0.1, 0.4),
         "one place and two classes": lambda rng: squares([0, 0], [0, 1], [0.6, 0.7], 0.1, 0.4),
@@ -164,12 +164,12 @@ EXERCISES = [
         "no boxes": lambda rng: (np.zeros((0, 4)), np.zeros((0, 3)), 0.5, 0.4),
         "two likely classes":
             lambda rng: (np.tile([0.0, 0, 10, 10], (2, 1)), np.array([[0.9, 0.1], [0.7, 0.6]]), 0.5, 0.4),
-    }),
+    }, example=(([[0, 0, 10, 10], [4, 0, 14, 10], [8, 0, 18, 10]], [[0.9, 0], [0.8, 0], [0.7, 0]], 0.5, 0.4), [0, 2])),
     Exercise("12.4", lowest_threshold, validation_boxes, "challenge", verify=refused, cases={
         "four right boxes": lambda rng: (FOUR_SCORES, np.ones(4, bool), 0.5),
         "too few boxes to be sure": lambda rng: (FOUR_SCORES, np.ones(4, bool), 0.6),
         "all boxes wrong": lambda rng: (np.linspace(0.1, 0.9, 50), np.zeros(50, bool), 0.5),
         "equal scores": lambda rng: (np.full(40, 0.5), np.arange(40) < 36, 0.8),
         "several crossings": lambda rng: (np.round(np.linspace(0.99, 0.2, 80), 2), np.arange(80) // 4 != 5, 0.8),
-    }),
+    }, example=(([0.6, 0.9, 0.7, 0.8], [True, True, True, True], 0.5), 0.6)),
 ]

@@ -137,17 +137,20 @@ def misjudged(arguments: tuple, answer: object) -> str | None:
 
 # fmt: off
 EXERCISES = [
-    Exercise("13.1", row_below, rows, "warm-up"),
+    Exercise("13.1", row_below, rows, "warm-up", example=(([320, 480], 2, 0.3, 640), [289.7, 463.5])),
     Exercise("13.2", miss, two_cameras, cases={
         "an upright rig": lambda rng: two_cameras(rng, np.array([0.0, 0.0, 1.0])),
         "cameras side by side": lambda rng: two_cameras(rng, np.array([0.0, 1.0, 0.0])),
         "pairs that obey exactly and directions near the poles": exact_pairs_and_poles,
-    }),
+    }, example=(
+        ([[1.0, 0, 0], [1.0, 0, 0], [1.0, 0, 0]], [[0.6, 0.8, 0], [0.8, 0, 0.6], [-0.6, 0.8, 0]], [0, 1, 0]),
+        [0, 0.644, 0.644],
+    )),
     Exercise("13.3", partners, tables, cases={
         "a tie that goes on from row to row": lambda rng: (np.array([[6, 6, 0], [0, 6, 2], [0, 0, 1]]),),
         "two objects that share nothing": lambda rng: (np.array([[5, 3], [2, 0]]),),
         "a table of zeros": lambda rng: (np.zeros((2, 3), int),), "one count": lambda rng: (np.array([[3]]),),
-    }),
+    }, example=(([[90, 12], [80, 0], [4, 6]],), [0, -1, 1])),
     Exercise("13.4", turn_of_the_lower, matches, "challenge", verify=misjudged, cases={
         "many matches": lambda rng: matches(rng, 40.0, MANY, noise=0.3, wrong=0.5),
         "a turn of nearly half a circle": lambda rng: matches(rng, turn=179.9),

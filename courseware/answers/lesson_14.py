@@ -110,11 +110,11 @@ EXERCISES = [
     Exercise("14.1", place, two_boxes, "warm-up", cases={
         "boxes across the seam": boxes_across_the_seam,
         "boxes near the left edge": lambda rng: two_boxes(rng, turn=0.04, wide=0.03),
-    }),
+    }, example=(([600, 380, 700, 460], [596, 350, 696, 430], 1280, 0.3), [1.7, -0.08, -0.91])),
     Exercise("14.2", range_sigma, lambda rng: (*triangles(rng), rng.uniform(0.002, 0.02)), cases={
         "exact baseline": lambda rng: (*triangles(rng), 0.0),
         "exact angles": lambda rng: (*triangles(rng)[:4], 0.0, 0.01),
-    }),
+    }, example=(([2, 4], [-0.4, -0.2], [-0.27, -0.13], 0.3, 0.005, 0.01), [0.126, 0.41])),
     Exercise("14.3", range_from_matches, matches, verify=refused_range, cases={
         "one match far off": lambda rng: matches(rng, 5, 1, parallax=(0.5, 0.6)),
         "a stranger comes first": a_stranger_comes_first,

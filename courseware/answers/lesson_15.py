@@ -92,7 +92,7 @@ EXERCISES = [
     Exercise("15.1", hue_term, hues, "warm-up", cases={
         "ends of the circle, opposite hues, both grey": lambda rng: (
             np.array([0, 360, 0, 180, 90, 270, np.nan]), np.array([0, 0, 360, 0, 270, 90, np.nan]), 1.5),
-    }),
+    }, example=(([350], [10], 1), [0.056])),
     Exercise("15.2", distance_term, observed_and_mapped, cases={
         "a landmark at the centroid": lambda rng: (
             rng.uniform(-3, 3, (4, 2)), np.array([[2, 1.002], [2.5, 1], [1.5, 1], [2, 4], [2, -2]]), 1.5),
@@ -103,7 +103,7 @@ EXERCISES = [
         "one row": lambda rng: (np.array([[0.2, 0.5, 0.4]]),),
     }, functions={
         least_sum: "That is the assignment with the least sum. The paper's search takes the cheapest: no way back.",
-    }),
+    }, example=(([[1.0, 2.0], [0.0, 5.0], [3.0, 4.0]],), ([1, 0, -1], [np.inf, 5, np.nan]))),
     Exercise("15.4", centroid_shift, places_some_hidden, "challenge", cases={
         "as many as the map has": lambda rng: (rng.uniform(0, 6, (14, 2)), 2),
         "all but one hidden": lambda rng: (rng.uniform(0, 6, (5, 2)), 4),

@@ -161,7 +161,7 @@ EXERCISES = [
     Exercise("16.2", fitted_scale, scaled_points, cases={
         "mirrored points": lambda rng: scaled_points(rng, (1, -1), 4),
         "points on a line": lambda rng: scaled_points(rng, (1, 0)),
-    }),
+    }, example=(([[0, 0], [2, 0]], [[1, 1], [1, 4]]), 1.5)),
     Exercise("16.3", odd_pair, points_with_an_odd_pair, cases={
         "blurred points": lambda rng: points_with_an_odd_pair(rng, 0.7, other_measures_differ),
         "points that fit badly": lambda rng: points_with_an_odd_pair(rng, 0.7, the_one_left_out_decides),
@@ -170,7 +170,8 @@ EXERCISES = [
         "a pair of weight 0": a_pair_of_weight_0, "nearly half a turn": nearly_half_a_turn,
         "equal weights": lambda rng: (*(points := noisy_points(rng, 3)), np.full(len(points[0]), 3.0)),
         "a wall that looks mirrored": a_wall_that_looks_mirrored,
-    }, functions={by_svd_without_sign: "U V^T may be a mirror: the sign of the determinant is missing."}),
+    }, functions={by_svd_without_sign: "U V^T may be a mirror: the sign of the determinant is missing."},
+             example=(([[1, 0], [3, 0], [0, 2]], [[2, 2], [2, 4], [0, 0]], [1, 1, 0]), (2, 1, 1.571))),
     Exercise("16.5", pose_sigmas, needles, "challenge", cases={
         "round errors": lambda rng: (rng.uniform(-2, 6, (5, 2)), rng.uniform(-3, 3), np.tile(np.eye(2), (5, 1, 1))),
         "two points": lambda rng: (rng.uniform(-2, 2, 2) + 3 * np.eye(2), 0.0, np.tile(0.04 * np.eye(2), (2, 1, 1))),

@@ -83,7 +83,7 @@ EXERCISES = [
         "close calls": lambda rng: (  # wrong *and* unable; all, one or most pairs wrong; one or both errors large
             *np.array([[np.nan, np.nan, 0.1, 0.1, 0.1, 3, 3, 0.1, 2], [np.nan, np.nan, 0.1, 0.1, 0.1, 3, 0.1, 3, 2]]),
             *np.array([[1, 0, 4, 9, 9, 9, 9, 9, 2], [1, 0, 4, 1, 6, 0, 1, 0, 0]])),
-    }),
+    }, example=(([0.1, 0.1, np.nan], [0.2, 2.5, np.nan], [9, 9, 1], [0, 0, 0]), [1, 0, -1])),
     Exercise("17.2", combined, two_groups, tolerance=1e-9, cases={
         "headings of table 3": lambda rng: (13, 11.94, 25.42, 5, 69.70, 47.09),
         "equal means": lambda rng: (8, 0.5, 0.2, 8, 0.5, 0.4), "one pose each": lambda rng: (1, 0.2, 0.0, 1, 0.6, 0.0),
@@ -92,7 +92,7 @@ EXERCISES = [
         "an object always seen": lambda rng: (np.array([1.0, 0.3, 0.5]),),
         "objects never seen": lambda rng: (np.array([0.0, 0.0, 0.4]),), "one object": lambda rng: (np.array([0.7]),),
         "an empty room": lambda rng: (np.empty(0),), "equal chances": lambda rng: (np.full(14, 0.25),),
-    }, tolerance=1e-9),
+    }, tolerance=1e-9, example=(([0.9, 0.5, 0.1],), 0.5)),
     Exercise("17.4", row_of_table, poses_with_errors, "challenge", cases={
         "headings of half a turn": lambda rng: (  # found a little to the other side: off by 2 degrees, not by 358
             np.array([[1.1, 0.9, np.pi], [1.9, 1.1, 0.03 - np.pi], [3.2, 4.2, -0.02]]),

@@ -140,8 +140,8 @@ def objects_and_landmarks(rng: np.random.Generator) -> tuple:
 # fmt: off
 EXERCISES = [
     Exercise("18.1", colour_cost, pairs_of_colours, "warm-up", tolerance=1e-4),
-    Exercise("18.2", pose_of_two, two_matches),
-    Exercise("18.3", match_or_leave, costs_in_nats),
+    Exercise("18.2", pose_of_two, two_matches, example=(([[1, 0], [3, 0]], [[2, 1], [2, 3]]), (2, 0, 1.571))),
+    Exercise("18.3", match_or_leave, costs_in_nats, example=(([[-5, -4], [-4, 3]],), [1, 0])),
     Exercise("18.4", max_answered, judged_poses, cases={
         "the surest is wrong": the_surest_is_wrong,
         "the limit met exactly": lambda rng: (  # by four and by eight; ten have too many wrong, and nine would do
@@ -150,7 +150,7 @@ EXERCISES = [
         "all right": lambda rng: (rng.uniform(0.1, 1, 9), np.full(9, True), 0.0),
     }, functions={
         ties_parted: "Poses of one confidence are answered together or not at all: no threshold parts them.",
-    }),
+    }, example=(([0.9, 0.8, 0.8, 0.4, 0], [True, False, True, True, True], 0.25), 0.8)),
     Exercise("18.5", farthest_match, objects_and_landmarks, "challenge", cases={
         "a match never pays": lambda rng: (9.0 * np.eye(2)[None], np.array([0.4, 0.2]), 0.5, np.array([[0.3, 0.9]]),
                                            np.array([0.3])),

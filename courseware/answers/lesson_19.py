@@ -73,6 +73,6 @@ EXERCISES = [
     Exercise("19.2", start_knowledge, tolerance=1e-9, inputs=lambda rng: (
         semantic_covariance(rng), float(rng.uniform(0.003, 0.03)), float(rng.uniform(0.2, 2.0)),
     )),
-    Exercise("19.3", places_needed, wanted, tolerance=1e-9),
+    Exercise("19.3", places_needed, wanted, tolerance=1e-9, example=((0.95, 0), 73)),
     Exercise("19.4", carried, on_a_lever, "challenge"),
 ]

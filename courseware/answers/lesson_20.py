@@ -73,7 +73,7 @@ EXERCISES = [
     Exercise("20.1", to_metres, raw_images, "warm-up", cases={
         "nothing measured": lambda rng: (np.zeros((2, 3), dtype=np.uint16), 1000.0, 0),
         "all measured": lambda rng: (rng.integers(1, 60_000, size=(2, 4)).astype(np.uint16), 5000.0, 0),
-    }),
+    }, example=(([[5000, 0, 65535]], 5000, 0), [[1.0, np.nan, 13.107]])),
     Exercise("20.2", resized_intrinsics, lambda rng: (some_k(rng), rng.choice([0.125, 0.25, 0.5, 2.0])), cases={
         "size unchanged": lambda rng: (some_k(rng), 1.0),
         "the paper's camera": lambda rng: (np.array([[217.0, 0, 87.5], [0, 217.0, 71.5], [0, 0, 1]]), 0.25),
@@ -83,9 +83,9 @@ EXERCISES = [
         "an even number of marks": lambda rng: marks(rng, shown=slice(4), misread=[0.0, -6.0, -14.0, -25.0]),
         "marks of both signs": lambda rng: marks(rng, shown=slice(2, 7), misread=[200.0, 200.0, 0.0, 0.0, 0.0]),
         "one mark": lambda rng: marks(rng, shown=slice(3, 4)),
-    }),
+    }, example=(([260, 300], [240, 270.8], 512, [1.63, 1.07]), 0.2)),
     Exercise("20.4", baseline_needed, rig_and_limit, "challenge", tolerance=1e-5, cases={
         "the example": lambda rng: (4.0, 0.5, 960, 0.10),
         "no baseline is enough": lambda rng: (8.0, 2.0, 512, 0.05),
-    }),
+    }, example=((4, 0.5, 960, 0.1), 0.371)),
 ]

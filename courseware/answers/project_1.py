@@ -114,7 +114,8 @@ def a_frame(rng: np.random.Generator, spread: float = 1.0) -> tuple:
 
 # fmt: off
 EXERCISES = [
-    Exercise("P1.1", initial_particles, lambda rng: (rng.uniform(-3, 3, 6), int(rng.integers(1, 9))), "warm-up"),
+    Exercise("P1.1", initial_particles, lambda rng: (rng.uniform(-3, 3, 6), int(rng.integers(1, 9))), "warm-up",
+             example=(([1, 2, 0, 0, 0, 3], 2), [[1, 2, 0, 0, 0, 3], [1, 2, 0, 0, 0, 3]])),
     Exercise("P1.2", propagate, cloud, cases={
         "facing back": lambda rng: (np.full((4, 6), np.pi), np.full(6, 0.3), rng.standard_normal((4, 6))),
         "a hand-held camera": lambda rng: (np.eye(5, 6), rng.uniform(0.02, 0.3, 6), rng.standard_normal((5, 6))),
@@ -122,12 +123,12 @@ EXERCISES = [
     Exercise("P1.3", likelihood, images, cases={
         "nothing measured": lambda rng: (np.full((2, 3), np.nan), rng.uniform(1, 9, (4, 2, 3)), 0.1),
         "a particle that hits nothing": lambda rng: (np.full((1, 2), 4.0), np.array([[[4.1, 4]], [[np.inf] * 2]]), 0.1),
-    }),
+    }, example=(([[2, np.nan, 3]], [[[2, 5, np.inf]], [[2.1, 5, 3]]], 0.1), [1.0, 1.5])),
     Exercise("P1.4", particle_weights, likelihoods, cases={
         "the paper's beta": lambda rng: (likelihoods(rng)[0], 0.01),
         "all alike": lambda rng: (np.full(int(rng.integers(2, 6)), rng.uniform(100, 900)), 0.01),
         "one alone": lambda rng: (rng.uniform(100, 900, 1), 0.01),
-    }),
+    }, example=(([300, 310, 320], 0.5), [0.013, 0.265, 0.721])),
     Exercise("P1.5", estimate, weighted_cloud, cases={
         "on both sides of the seam": lambda rng: (np.outer([1, -1], [1, 2, 3, 0.1, 0.1, 3.1]), np.array([0.3, 0.7])),
     }),
@@ -135,6 +136,6 @@ EXERCISES = [
         "last ones without weight": lambda rng: (np.array([0.25, 0.25, 0.5, 0, 0, 0, 0, 0]), rng.uniform(0.05, 0.95)),
         "all weight on one": lambda rng: (np.eye(6)[rng.integers(6)], rng.uniform(0.05, 0.95)),
         "equal weights": lambda rng: (np.full(8, 0.125), rng.uniform(0.05, 0.95)),
-    }),
+    }, example=(([0.1, 0.6, 0.0, 0.3], 0.5), [1, 1, 1, 3])),
     Exercise("P1.7", one_round, a_frame, "challenge", cases={"all at one place": lambda rng: a_frame(rng, 0)}),
 ]

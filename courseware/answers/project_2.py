@@ -167,7 +167,7 @@ EXERCISES = [
     }),
     Exercise("P2.5", associate, penalty_tables, cases={
         "more seen than mapped": lambda rng: (rng.uniform(0, 2, (6, 3)),),
-    }),
+    }, example=(([[1, 2], [0.5, 103]],), [1, 0])),
     Exercise("P2.6", fit_pose, some_pairs, "challenge", cases={
         "turned by half": lambda rng: some_pairs(rng, 5, 3.1),
         "a mirror image": lambda rng: some_pairs(rng, 5, 0.1, mirror=-1),
@@ -175,5 +175,5 @@ EXERCISES = [
         "nothing": lambda rng: (np.zeros((0, 2)), np.zeros((0, 2))),
         "one place twice": lambda rng: (np.full((2, 2), 1.5), rng.uniform(0, 6, (2, 2))),
         "one landmark twice": lambda rng: (rng.uniform(-4, 4, (2, 2)), np.full((2, 2), 2.5)),
-    }),
+    }, example=(([[1, 0], [3, 0]], [[2, 1], [2, 3]]), (2, 0, 1.571))),
 ]

@@ -172,7 +172,7 @@ EXERCISES = [
     }),
     Exercise("P3.3", assign, rivals_for_landmarks, cases={
         "all too far": lambda rng: (rng.uniform(20, 60, (3, 5)), np.ones((3, 5), dtype=bool), 5.0),
-    }),
+    }, example=(([[1, 2], [1, 9]], [[True, True], [True, True]], 5), ([1, 0], 8.5))),
     Exercise("P3.4", refit, matched_places, "challenge", verify=verify_refit, tolerance=1e-4,
              cases={"heading at the wrap": lambda rng: matched_places(rng, np.pi - 0.01)}, functions={
         lambda start, places, covariances, targets: fit_rigid_2d(places, targets, covariances=covariances):

@@ -156,10 +156,10 @@ EXERCISES = [
         "the code is 0": lambda rng: raw_frames(rng, (0,)),
         "the code is 65535": lambda rng: raw_frames(rng, (65_535,)),
         "the code is another": lambda rng: raw_frames(rng, (1, 32_001, 65_000)),
-    }),
+    }, example=(([[[0, 2012, 0], [1987, 0, 2043]]],), 0)),
     Exercise("P4.2", unit_and_offset, on_a_line, cases={
         "no offset": lambda rng: (np.array([1000.0, 2000.0, 4000.0, 8000.0]), np.array([1.0, 2.0, 4.0, 8.0])),
-    }),
+    }, example=(([1050, 2050, 4050], [1, 2, 4]), (1000, 0.05))),
     Exercise("P4.3", focal_length, a_wall, cases={
         "a pixel on the axis": lambda rng: (2.0 * np.sqrt(1 + squares((7, 9)) / 20.0**2), 2.0),
         "corners not measured": lambda rng: a_wall(rng, np.nan),

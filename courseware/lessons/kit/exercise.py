@@ -21,8 +21,9 @@ class Exercise:
     inputs: makes one tuple of arguments from a `numpy.random.Generator`. level: how hard it is. cases: like `inputs`,
     but each runs once in every check. They are special cases (a seam, a mirror image, empty input, equal values) with a
     name in words, which a hint may tell: `{"one point": lambda rng: (np.zeros((1, 2)),)}`. tolerance: absolute and
-    relative, as in `numpy.allclose`. mistakes: about nine edits of the solution with their hints (`kit.mistakes`), from
-    the file of hints. functions: function -> hint, for a mistake that is no edit of the solution.
+    relative, as in `numpy.allclose`. example: the numbers that the task shows, as `(arguments, answer)` with lists for
+    arrays; `tools.refresh` writes them into the task. mistakes: about nine edits of the solution with their hints
+    (`kit.mistakes`), from the file of hints. functions: function -> hint, for a mistake that is no edit.
 
     An answer is judged in this order:
 
@@ -44,6 +45,7 @@ class Exercise:
     tolerance: float = 1e-6
     others: Sequence[Callable] = ()
     verify: Callable[[tuple, object], str | None] | None = None
+    example: tuple[tuple, object] | None = None
 
     def draw(self, rng: np.random.Generator) -> list[tuple]:
         """Return the arguments of every call of one check: the cases, then `N_INPUTS` random inputs."""
