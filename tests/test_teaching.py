@@ -3,6 +3,7 @@ that exist, a table of costs for every notebook, and an example exercise that re
 
 import functools
 import re
+from dataclasses import replace
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 
@@ -12,9 +13,10 @@ import pytest
 
 from courseware.cli import COMMANDS, find_command, parse
 from courseware.lessons.kit.exercises import find_exercise, judge, lesson_exercises
+from courseware.lessons.kit.mistakes import read_hints
 from courseware.paths import REPOSITORY, foundation_paths, notebook_paths, project_paths
 from tools.bench_tables import capacity_sentence, lessons_rows
-from tools.refresh import solution_cell, stub_cell
+from tools.refresh import solution_cell, stub_cell, with_example
 
 TEACHING = (REPOSITORY / "TEACHING.md").read_text(encoding="utf-8")
 PATHS = {path.name[:2]: path for path in [*notebook_paths(), *project_paths()]}
@@ -144,13 +146,16 @@ def test_the_example_exercise_is_one(tmp_path):
     """The code and the cells of section 10: the stub is not passed, the solution is, mistakes get their own hints."""
     code = re.search(r"```python\n(.*?)```", TEACHING, re.S)[1]
     cells = re.split(r"^%% ", re.search(r"```\n(%% .*?)```", TEACHING, re.S)[1], flags=re.M)[1:]
+    (tmp_path / "example.hints").write_text(re.search(r"```\n(\[.*?)```", TEACHING, re.S)[1])
     assert [cell.partition("\n")[0] for cell in cells] == ["task", "exercise", "check", "hint", "solution"]
-    imports = "import numpy as np\n\nfrom courseware.lessons.kit.exercises import Exercise\n\n\n"
+    imports = "import numpy as np\n\nfrom courseware.lessons.kit.exercise import Exercise\n\n\n"
     (tmp_path / "example.py").write_text(imports + code)
     spec = spec_from_file_location("example", tmp_path / "example.py")
     example = module_from_spec(spec)
     spec.loader.exec_module(example)
-    exercise = example.POLES
+    ((number, mistakes),) = read_hints(tmp_path / "example.hints").items()
+    exercise = replace(example.POLES, mistakes=mistakes)
+    assert exercise.number == number
     assert exercise.number not in [known.number for known in lesson_exercises(exercise.number[:2])], "it is an example"
     student: dict = {"np": np}
     exec(stub_cell(exercise), student)
@@ -160,4 +165,4 @@ def test_the_example_exercise_is_one(tmp_path):
     for mistake in exercise.known:
         assert mistake.hint in judge(exercise, mistake.functions[0]).message
     assert f'check("{exercise.number}", greatest_depth)' in cells[2]
-    np.testing.assert_allclose(exercise.solution(np.array([0.012, 0.12]), 220, 1.32), [2, 20])
+    assert cells[0] == with_example(cells[0], exercise)

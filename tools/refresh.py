@@ -25,7 +25,8 @@ from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernel
 from course_lib.files import atomic_write, temporary_folder
 from courseware.commands.saved_panels import drop_widgets
 from courseware.commands.test import OFFLINE_STARTUP
-from courseware.lessons.kit.exercises import Exercise, find_exercise
+from courseware.lessons.kit.exercise import Exercise
+from courseware.lessons.kit.exercises import find_exercise
 from courseware.paths import REPOSITORY, STORE_SCENES, numbered_paths
 from tools.pace import write_minutes
 from tools.series_pictures import write_picture
@@ -39,6 +40,10 @@ METADATA = {
 KEPT_CELL_METADATA = ("exercise", "tags", "numbers_within", "because", "jupyter", "jp-MarkdownHeadingCollapsed")
 
 
+NUMBER = r"(-?\d+(\.\d+)?(e-?\d+)?|nan|NaN|inf|True|False)\b"
+VALUE = rf"(?P<value>\[({NUMBER}|[\s,\[\]])*\]|(?<![\w.\\]){NUMBER})"  # a list of numbers, of any depth, or one number
+
+
 class RefreshError(RuntimeError):
     """A notebook did not run to its end or became too large; its file is unchanged."""
 
@@ -47,7 +52,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `refresh`."""
     what = "lessons and projects, such as 03, F1 or P1 (default: all)"
     parser.add_argument("lessons", nargs="*", metavar="NN", help=what)
-    parser.add_argument("--solutions", action="store_true", help="write stubs and solutions only; run nothing")
+    parser.add_argument(
+        "--solutions", action="store_true", help="write stubs, solutions and examples only; run nothing"
+    )
     what = "seconds a cell may take (default: %(default)g)"
     parser.add_argument("--cell-timeout", type=float, default=HANGS_S, metavar="S", help=what)
 
@@ -99,13 +106,46 @@ def refresh(path: Path, cell_timeout: float = HANGS_S) -> tuple[float, int]:
 
 
 def write_solutions(notebook: nbformat.NotebookNode) -> None:
-    """Write the stubs and the solutions of a notebook's exercises anew, from the functions in `exercises.py`."""
+    """Write the stubs, the solutions and the numbers of the examples into a notebook, from its exercises."""
     for cell in notebook.cells:
         tags = cell.metadata.get("tags", [])
         if "exercise" in tags:
             cell.source = stub_cell(find_exercise(cell.metadata["exercise"]))
         elif "solution" in tags:
             cell.source = solution_cell(find_exercise(cell.metadata["exercise"]))
+        elif "task" in tags:
+            cell.source = with_example(cell.source, find_exercise(cell.metadata["exercise"]))
+
+
+def with_example(task: str, exercise: Exercise) -> str:
+    """Return the text of a task with the numbers of its exercise's example. All words stay as they are.
+
+    The example begins at the first "For `name` = ". Each argument's value is written behind its name, and the numbers
+    of the answer behind the last argument. Raises `RefreshError` if the text has no place for one of them.
+    """
+    if exercise.example is None:
+        return task
+    arguments, answer = exercise.example
+    names = list(inspect.signature(exercise.solution).parameters)
+    begin = re.search(rf"\bFor `?({'|'.join(names)})`? = ", task)
+    if begin is None:
+        raise RefreshError(f"{exercise.number}: the task needs an example that begins with 'For `{names[0]}` = '")
+    before, text, last = task[: begin.start()], task[begin.start() :], 0
+    for name, value in zip(names, arguments, strict=True):
+        text, end = _with_number(text, rf"\b{name}`? = (np\.array\()?", value, 0, exercise.number)
+        last = max(last, end)
+    for value in answer if isinstance(answer, tuple) else (answer,):
+        text, last = _with_number(text, "", value, last, exercise.number)
+    return before + text
+
+
+def _with_number(text: str, words: str, value: object, start: int, number: str) -> tuple[str, int]:
+    """Return a text with the first value behind `words` (a pattern) after `start` replaced, and where it ends."""
+    found = re.compile(words + VALUE).search(text, start)
+    if found is None:
+        raise RefreshError(f"{number}: the task's example has no place for {value}")
+    first, last = found.span("value")
+    return f"{text[:first]}{value}{text[last:]}", first + len(str(value))
 
 
 def stub_cell(exercise: Exercise) -> str:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 
 
 def fuse(means, covariances):
@@ -69,92 +69,15 @@ EXERCISES = [
     Exercise("F3.1", fuse, several, "warm-up", cases={
         "one alone": lambda rng: (rng.normal(size=(1, 2)), spread(rng, 2)[None]),
         "nearly useless beside good": lambda rng: (rng.normal(size=(2, 2)), np.array([np.eye(2), 1e4 * np.eye(2)])),
-    }, mistakes="""
-        certainties.sum(axis=0) => certainties.mean(axis=0)
-        means), covariance => means), np.linalg.inv(certainties.mean(axis=0))
-        You average the certainties. They *add*: each further estimate makes the result surer.
-        covariance @ np.einsum("nij,nj->i", certainties, means) => means.mean(axis=0)
-        Your covariance is right. Your mean weighs all estimates alike: weigh each by its certainty.
-        covariance @ np.einsum("nij,nj->i", certainties, means) => np.einsum("nij,nj->i", certainties, means)
-        You have added certainty times mean. Multiply the sum by the joint covariance.
-        means), covariance => means), certainties.sum(axis=0)
-        That is the sum of the certainties. Its inverse is the covariance.
-        = np.linalg.inv(covariances) => = covariances
-        You add covariances. Add their inverses, the certainties.
-        np.linalg.inv(covariances) => 1 / covariances
-        np.linalg.inv(covariances) => 1 / np.where(covariances == 0, np.inf, covariances)
-        You invert number by number. A certainty is the inverse of the *matrix*.
-        np.linalg.inv(covariances) => np.array([np.diag(1 / np.diag(P)) for P in covariances])
-        You use the variances alone. How the numbers err together, off the diagonal, counts, too.
-        ... => return means.mean(axis=0), covariances.mean(axis=0)
-        ... => return means.mean(axis=0), covariances.mean(axis=0) / len(means)
-        That weighs all estimates alike. Weigh each by its certainty, the inverse of its covariance.
-        means), covariance => means), covariances.mean(axis=0)
-        Your mean is right. Your covariance is the mean of the given ones, as if nothing was gained.
-        means), covariance => means), covariances.sum(axis=0) / len(means) ** 2
-        Your mean is right. Your covariance is that of the plain mean, which weighs all alike.
-    """),
+    }),
     Exercise("F3.2", track, drive, cases={
         "a gap first": lambda rng: (np.array([[np.nan], [1.0], [0.5]]), *drive(rng)[1:]),
         "gaps only": lambda rng: (np.full((3, 1), np.nan), *drive(rng)[1:]),
         "no gap": lambda rng: drive(rng, 0.0),
-    }, mistakes="""
-        F @ x, F @ P @ F.T + Q => x, P
-        The prediction is missing. It comes in every frame, with a measurement and without one.
-        F @ P @ F.T + Q => F @ P @ F.T
-        You leave out Q. Without system noise the filter soon stops listening to measurements.
-        F @ P @ F.T + Q => P + Q
-        The covariance moves, too: F P F^T turns what is unknown in the speed into what is unknown in the place.
-        F @ P @ F.T + Q => F @ P + Q
-        F @ P @ F.T + Q => F.T @ P @ F + Q
-        The covariance moves by F P F^T, with F on its left and the transpose of F on its right.
-        for one in z: => for one in np.nan_to_num(z):
-        You take a gap for a measurement of 0. In a gap there is nothing to update.
-        if not np.isnan(one).any(): => if True: and also one - H @ x => np.nan_to_num(one - H @ x)
-        You put the prediction in for the gap. The mean stays right, but the filter becomes too sure.
-        H @ P @ H.T + R) => H @ P @ H.T)
-        R is missing: your filter believes each measurement fully.
-        one - H @ x => one
-        K multiplies the innovation: what was measured minus what was expected, H x.
-        P - K @ H @ P => P
-        Your covariance never shrinks. After a measurement it is (I - K H) P.
-        P - K @ H @ P => P - K @ H @ P + K @ R @ K.T
-        You add K R K^T once too often. (I - K H) P holds the noise of the measurement already.
-        P - K @ H @ P => (np.eye(len(x)) - K @ H) @ P @ (np.eye(len(x)) - K @ H).T
-        With (I - K H) on both sides of P, the noise K R K^T must be added. With it on one side, nothing.
-        x, P = F @ x, F @ P @ F.T + Q => pass and also (P) => (P); x = F @ x; P = F @ P @ F.T + Q
-        You update first and predict then. The task begins each frame with a prediction.
-    """),
+    }),
     Exercise("F3.3", fuse_correlated, dependent, "challenge", cases={
         "independent": lambda rng: (np.zeros(2), spread(rng, 2), np.ones(2), spread(rng, 2), np.zeros((2, 2))),
         "the second made from the first": lambda rng: (
             np.zeros(2), (P := spread(rng, 2)) + spread(rng, 2), np.ones(2), P, P),
-    }, mistakes="""
-        S = P0 + P1 - C - C.T => C = 0 * C; S = P0 + P1
-        That holds for independent errors. C must make the second estimate count less.
-        P0 + P1 - C - C.T => P0 + P1
-        Your S leaves out C. The difference x1 - x0 has less noise if both err together.
-        P0 + P1 - C - C.T => P0 + P1 - C
-        P0 + P1 - C - C.T => P0 + P1 - 2 * C
-        C is not symmetric: the covariance of x1 - x0 has C once as it is and once transposed.
-        P0 + P1 - C - C.T => P0 + P1 + C + C.T
-        That is the covariance of the sum. You need that of the difference, x1 - x0.
-        K = (P0 - C) => K = P0
-        Your K leaves out C. Where both err together, x1 - x0 says less about the error of x0.
-        K = (P0 - C) => K = (P1 - C.T)
-        That is the weight of x0. K is the weight of x1, which grows with the uncertainty of x0.
-        (P0 - C) @ np.linalg.inv(S) => np.linalg.inv(S) @ (P0 - C)
-        The inverse of S stands on the wrong side. Matrices do not commute.
-        K = (P0 - C) => K = (P0 - C.T)
-        Which is transposed? C = E[e0 e1^T], and K must fit the error of x0 to the difference.
-        P0 - K @ (P0 - C).T => P0 - K @ P0
-        P0 - K @ (P0 - C).T => (np.eye(len(x0)) - K) @ P0
-        Your mean is right. (I - K) P0 holds for independent errors only.
-        P0 - K @ (P0 - C).T => P0 - K @ S
-        Your mean is right. The gain is K S K^T, with K on both sides.
-        K @ (x1 - x0) => K @ (x0 - x1)
-        Your mean moves away from the second estimate: x0 + K (x1 - x0).
-        S = P0 + P1 - C - C.T => C = C * 0 + np.diag(np.diag(C)); S = P0 + P1 - C - C.T
-        You use the diagonal of C alone. The errors of different numbers depend on each other, too.
-    """),
+    }),
 ]

@@ -4,7 +4,7 @@ import numpy as np
 
 from course_lib.geometry import rotation_exp
 from courseware.lessons.foundation_4.two_views import random_directions
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 
 
 def other_camera(R, c):
@@ -64,86 +64,14 @@ EXERCISES = [
     Exercise("F4.1", other_camera, a_motion, "warm-up", cases={
         "an upright rig": upright,
         "cameras with the same axes": lambda rng: (np.eye(3), a_motion(rng)[1]),
-    }, mistakes="""
-        c / np.linalg.norm(c) => c
-        A direction is a vector of length one. Yours is as long as the baseline.
-        -R.T @ forth => R.T @ forth
-        The second camera looks back along the baseline: look at the sign of your second direction.
-        -R.T @ forth => -R @ forth
-        R turns from the second camera's axes to the first one's. You need the way back, which is its transpose.
-        -R.T @ forth => -forth
-        The second panorama counts in the axes of its own camera, which may be turned.
-        np.array([forth, -R.T @ forth]) => np.array([-R.T @ forth, forth])
-        The first direction belongs to the first panorama. Here c is the second camera's place in the first frame.
-        np.array([forth, -R.T @ forth]) => np.array([R.T @ forth, -R.T @ forth])
-        np.array([forth, -R.T @ forth]) => np.array([R @ forth, -forth])
-        c already counts in the first camera's axes. Turn nothing there.
-        np.array([forth, -R.T @ forth]) => np.array([-forth, R.T @ forth])
-        Both directions are opposite to the right ones. Does c lead to the second camera, or away from it?
-        c / np.linalg.norm(c) => c / np.linalg.norm(c[:2])
-        The baseline may have a part along z. Divide by the length in space.
-        np.array([forth, -R.T @ forth]) => np.array([forth, forth])
-        Both of your directions are the same. Stand at the second camera: where is the first one?
-    """),
+    }),
     Exercise("F4.2", distance_along, sights, cases={
         "an upright rig": lambda rng: sights(rng, motion=upright(rng)),
         "all points in front": in_front,
         "one match": lambda rng: in_front(rng, n=1),
-    }, mistakes="""
-        np.where((d1 > 0) & (d2 > 0), d1, np.nan) => d1
-        np.where((d1 > 0) & (d2 > 0), d1, np.nan) => np.abs(d1)
-        Where rays meet behind a camera there is no point. The answer is NaN.
-        (d1 > 0) & (d2 > 0) => d1 > 0
-        (d1 > 0) & (d2 > 0) => d2 > 0
-        (d1 > 0) & (d2 > 0) => (d1 > 0) | (d2 > 0)
-        You look at one of the cameras. The point must be in front of both.
-        x2 @ R.T => x2
-        Your rays count in two frames. Turn the second ray into the first camera's axes.
-        x2 @ R.T => x2 @ R
-        You turn the second ray the wrong way. For rows, R x becomes x @ R.T.
-        (d2 > 0), d1, np.nan) => (d2 > 0), d2, np.nan)
-        That is the distance from the second camera.
-        (along_1 - cosine * along_2) / (1 - cosine**2) => along_1
-        (along_1 - cosine * along_2) / (1 - cosine**2) => along_1 - cosine * along_2
-        That is a projection of the baseline. Ask for which d1 and d2 both rays reach the same point.
-        ... => return np.linalg.norm(c) * np.sqrt(1 - x2[:, 2]**2) / np.sin(np.arcsin(x2[:, 2]) - np.arcsin(x1[:, 2]))
-        That is lesson 14's equation. It holds for an upright rig alone.
-        x1 @ c, y @ c => x1 @ c / np.linalg.norm(c), y @ c / np.linalg.norm(c)
-        Your baseline has length one. The distances are in metres, because c is.
-        np.nan => 0.0
-        np.nan => np.inf
-        Where there is no point, the answer is NaN, and no number.
-        ... => return distance_along(x1, x2, R.T, -R.T @ c)
-        You read R and c the other way round. R turns from the second to the first, and c is in the first frame.
-        ... => return np.linalg.norm(c) / np.linalg.norm(np.cross(x1, x2 @ R.T), axis=1)
-        ... => return np.linalg.norm(c) / np.arccos(np.sum(x1 * (x2 @ R.T), axis=1))
-        Baseline over parallax holds far away and beside the rig. Which angle lies opposite to your distance?
-    """),
+    }),
     Exercise("F4.3", distance_sigma, lambda rng: (*in_front(rng), rng.uniform(0.001, 0.01)), "challenge", cases={
         "an upright rig": lambda rng: (*in_front(rng, motion=upright(rng)), 0.005),
         "exact directions": lambda rng: (*in_front(rng), 0.0),
-    }, mistakes="""
-        (d1 * cosine) ** 2 + d2**2 => d2**2
-        The first camera's own error turns its ray, too, so the meeting point moves along it.
-        (d1 * cosine) ** 2 + d2**2 => (d1 * cosine) ** 2
-        The second camera's error is missing. It is the larger part.
-        (d1 * cosine) ** 2 => d1**2
-        A cosine is missing: if the rays cross at a right angle, the first one's error does not change d1 at all.
-        (d1 * cosine) ** 2 + d2**2 => (d2 * cosine) ** 2 + d1**2
-        d1 and d2 are exchanged. How far does the second ray's error move it across, at the point?
-        np.sqrt((d1 * cosine) ** 2 + d2**2) => (np.abs(d1 * cosine) + d2)
-        Two independent errors add as squares.
-        sigma / sine => sigma
-        The crossing is oblique. Divide by the sine of the parallax.
-        sigma / sine => sigma / sine**2
-        You divide by the sine of the parallax once too often: d1 and d2 hold it already.
-        ... => return sigma * distance_along(x1, x2, R, c) * distance_along(x2, x1, R.T, -R.T @ c) / np.linalg.norm(c)
-        ... => return sigma * np.sqrt(2) * distance_along(x1, x2, R, c) ** 2 / np.linalg.norm(c)
-        That is the rule for far points beside the rig, square over baseline. Here the rays may lie anywhere.
-        x2 @ R.T => x2
-        Your rays count in two frames. Turn the second ray into the first camera's axes.
-        sigma / sine * np.sqrt => sigma**2 / sine**2 * np.square
-        sigma / sine * np.sqrt((d1 * cosine) ** 2 + d2**2) => sigma**2 / sine**2 * ((d1 * cosine) ** 2 + d2**2)
-        That is a variance, or its square. The task asks for the standard deviation.
-    """),
+    }),
 ]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from course_lib.geometry import wrap_angle
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 from courseware.lessons.kit.values import as_numbers
 from courseware.lessons.lesson_00.search import Score
 
@@ -68,62 +68,13 @@ EXERCISES = [
     Exercise("00.1", depth_difference, two_images, "warm-up", cases={
         "a gap and a hole": lambda rng: (np.array([[np.nan, 2.0, 3.0]]), np.array([[2.0, 2.5, np.inf]])),
         "equal images": lambda rng: (np.full((2, 3), 4.0), np.full((2, 3), 4.0)),
-    }, mistakes="""
-        np.abs( => (
-        np.abs(measured - simulated) => simulated - measured
-        Too near is as wrong as too far, and no difference is below zero. Which function drops the sign?
-        np.abs(measured - simulated) => np.abs(measured - simulated).mean()
-        That is one number for the whole image. Here every pixel keeps its own.
-        np.abs(measured - simulated) => np.nan_to_num(np.abs(measured - simulated))
-        np.abs(measured - simulated) => np.where(np.isnan(measured), 0.0, np.abs(measured - simulated))
-        Where the camera measured nothing (nan) yours gives a number, as if it were known. Leave nan and inf alone.
-        np.abs(measured - simulated) => np.minimum(np.abs(measured - simulated), 10.0)
-        Yours stops at 10 m. Nothing in the task caps a difference, and through an open door it is larger.
-        np.abs(measured - simulated) => 0.1 / (0.1 + np.abs(measured - simulated))
-        That is the pixel's vote. The task asks one step earlier, for the difference in metres.
-        np.abs(measured - simulated) => np.where(np.isinf(simulated), np.nan, np.abs(measured - simulated))
-        Where the map has a hole yours is nan. Only a pixel that was *not measured* is nan; at a hole it is inf.
-    """),
+    }, example=(([2.0, 3.0, np.nan], [2.5, 2.9, 4.0]), [0.5, 0.1, np.nan])),
     Exercise("00.2", difference_of_vote,
              lambda rng: (rng.uniform(0.05, 0.95, (3, 4)), rng.uniform(0.05, 0.5)),
-             cases={"votes of 0 and 1": lambda rng: (np.array([0.1, 0.6, 1.0, 0.0, 0.5]), 0.1)}, mistakes="""
-        alpha / vote - alpha => alpha * vote / (1 - vote)
-        At vote 1 yours is inf, but there the two images agree. Numerator and denominator have changed places.
-        - alpha =>
-        At vote 1 the difference must be 0, and yours is alpha. What do you have to take away?
-        alpha / vote - alpha => (1 - vote) / vote
-        Yours has no unit, because a vote is a pure number. What turns it into metres?
-        alpha / vote - alpha => alpha * (1 - vote)
-        A vote of one half is a difference of alpha, and yours gives half of it. The term is not a straight line.
-        alpha / vote - alpha => alpha / (alpha + vote)
-        That is the term again, with the vote in place of the difference. Solve it for d.
-        alpha / vote - alpha => 0.1 / vote - 0.1
-        Yours is right for the paper's alpha of 0.1 alone. Take the alpha that is given.
-        alpha / vote - alpha => np.where(vote > 0, alpha / vote - alpha, np.nan)
-        alpha / vote - alpha => np.where(vote > 0, alpha / vote - alpha, 0)
-        A vote of 0 gives neither nan nor 0, because only an infinite difference earns nothing.
-        alpha / vote - alpha => 1 / vote - alpha
-        You have 1 where alpha belongs: vote times (alpha + d) is alpha, not 1.
-        alpha / vote - alpha => alpha / vote - 1
-        You take a pure number away from metres. Solve v (alpha + d) = alpha again and look at the unit of each term.
-    """),
+             cases={"votes of 0 and 1": lambda rng: (np.array([0.1, 0.6, 1.0, 0.0, 0.5]), 0.1)},
+             example=(([1, 0.5, 0.25, 0], 0.1), [0, 0.1, 0.3, np.inf])),
     Exercise("00.3", find_the_camera, a_search, "challenge", verify=off_the_top, cases={
         "a far start": lambda rng: a_search(rng, rng.choice([-1, 1], 3)),
         "start at the top": lambda rng: a_search(rng, 0),
-    }, mistakes="""
-        ... => return start
-        That is the pose that you were given. Ask `score` about others, and keep the best.
-        argmax => argmin
-        You keep the worst pose. The true one has the *greatest* score.
-        range(10) => range(1) and also (40, 3) => (400, 3)
-        One wide cloud never comes close enough. Where would you draw the next one, and how wide?
-        cloud = best + => cloud = start +
-        Every cloud of yours lies about the start. Draw the next one about the best pose so far.
-        0.65 * spread => spread
-        Your clouds stay as wide as the first. Make each of them narrower than the one before.
-        0.65 * spread => 0.2 * spread
-        Your clouds become narrow too soon, so they miss the top. Make each about two thirds as wide.
-        np.deg2rad(7) => 7
-        Your yaw spreads over 7 radians. Poses are in radians, so convert the degrees.
-    """),
+    }),
 ]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from course_lib.geometry import pose_matrix
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 from courseware.lessons.kit.values import as_numbers
 
 
@@ -77,98 +77,21 @@ EXERCISES = [
     Exercise("02.1", aim, lambda rng: (rng.uniform(0.4, 5, (8, 3)) * rng.choice([-1, 1], (8, 3)),), "warm-up", cases={
         "across the seam": lambda rng: (np.array([[-3.0, 0.01, 0.5], [-3.0, -0.01, -0.5], [2.0, 0.0, 0.0]]),),
         "one steep point": lambda rng: (np.array([[-0.02, 0.03, 2.0]]),),
-    }, mistakes="""
-        np.arctan2(y, x) => -np.arctan2(y, x)
-        Your azimuth grows to the right. It must grow to the left, from x to y.
-        np.arctan2(y, x) => np.arctan2(y, x) % (2 * np.pi)
-        Your azimuths run from 0 to 2 pi, but the task asks for -pi to pi.
-        np.arctan2(z, np.hypot(x, y)) => np.arctan2(np.hypot(x, y), z)
-        Your elevation counts from straight up. Here 0 is level.
-        np.hypot(x, y) => np.linalg.norm(points, axis=1)
-        z over the range is a sine. arctan2 needs z and the distance on the floor.
-        np.hypot(x, y) => x
-        Your elevation uses x or y alone. How far away on the floor is the point?
-        np.linalg.norm(points, axis=1) => np.hypot(x, y)
-        Your range is the distance on the floor, but the ray goes up or down as well.
-        ... => ranges, *angles = aim(points); return ranges, *np.rad2deg(angles)
-        Your angles are in degrees, but the task asks for radians.
-    """),
+    }),
     Exercise("02.2", station_places, some_steps, cases={
         "round a square": lambda rng: (pose_matrix(np.tile([3.0, 0, 0, 0, 0, np.pi / 2], (4, 1))),),
         "one step": lambda rng: some_steps(rng, 1),
         "one station": lambda rng: (np.empty((0, 4, 4)),),
-    }, mistakes="""
-        ... => return np.vstack([np.zeros(3), np.cumsum(steps[:, :3, 3], axis=0)])
-        You add the steps up as if no station were turned. Each step counts along the axes of the one before.
-        pose @ step => step @ pose
-        Your products grow on the wrong side. The newest step is the first that acts on a point.
-        pose @ step => pose @ np.linalg.inv(step)
-        You walk every step backwards. A step is already the pose of the next station.
-        np.array(places) => np.array(places)[1:]
-        np.array(places) => np.array(places)[:-1]
-        K steps lead to K + 1 stations. You miss the last one, or the first at (0, 0, 0) of its own frame.
-        pose = pose @ step => places.append(places[-1] + pose[:3, :3] @ step[:3, 3]); pose = step; continue
-        You turn each step by the turn before it alone. All turns so far have turned it.
-        pose = pose @ step => places.append(places[-1] + pose[:3, :3].T @ step[:3, 3]); pose = pose @ step; continue
-        You turn each step the wrong way. R leads from the station's axes to the world's as it is.
-        pose @ step => pose @ pose_matrix(np.r_[step[:3, 3], 0, 0, np.arctan2(step[1, 0], step[0, 0])])
-        Yours is right on a level floor, because you turn by the heading alone. A step may tilt and roll, too.
-        pose[:3, 3] => pose[3, :3]
-        Your poses are right, but you read their last *row*. The place is in the last column.
-        ... => return np.vstack([np.zeros(3), steps[:, :3, 3]])
-        These are the steps themselves, each counted from the station before. Carry them on to station 0.
-    """),
+    }),
     Exercise("02.3", share_of_holes, places_and_map, cases={
         "no holes": lambda rng: (np.eye(3), np.concatenate([np.eye(3), np.eye(3) + 0.04, np.eye(3)[:2] - 0.03]), 0.1),
         "nothing but holes": lambda rng: (rng.uniform(0, 1, (12, 3)), rng.uniform(3, 4, (5, 3)), 0.1),
-    }, mistakes="""
-        ... => return share_of_holes(mapped, seen, limit)
-        You ask which map points lie off the room. A hole is the other way: a place with no map near it.
-        nearest > limit => nearest <= limit
-        That is the share that is mapped. The holes are the rest.
-        ... => return 1 - np.sum([np.linalg.norm(mapped - p, axis=1) <= limit for p in seen]) / len(seen)
-        You count pairs. Several map points may lie near one place, but it counts once.
-        np.mean(nearest > limit) => np.sum(nearest > limit)
-        A share of the places is the number of holes, divided by the number of all *places*.
-        nearest > limit => nearest
-        That is a mean distance in metres. Count the places that are farther than the limit.
-        .min() => .mean()
-        You let far map points count. One near a place is enough, so only the nearest one decides.
-        ... => return share_of_holes(seen[:, :2], mapped[:, :2], limit)
-        You measure on the floor, but a map point high above a place is not near it. Take x, y *and* z.
-        nearest > limit => nearest**2 > limit
-        You compare a squared distance with the limit. Take the root.
-        np.linalg.norm(mapped - p, axis=1) => np.abs(mapped - p).sum(axis=1)
-        You add up the ways along x, y and z. A distance is the root of a sum of squares.
-    """),
+    }),
     Exercise("02.4", lateral_sigma,
              lambda rng: (int(rng.integers(2, 20)), *rng.uniform([3, 0.003, 0.001], [8, 0.02, 0.005])),
              "challenge", verify=off_the_sigma, cases={
         "a single step": lambda rng: (1, 6.0, 0.008, 0.0035),
         "perfect headings": lambda rng: (9, 5.0, 0.010, 0.0),
         "perfect places": lambda rng: (12, 5.0, 0.0, 0.0017),
-    }, mistakes="""
-        + np.sum((behind * sigma_heading) ** 2) =>
-        You leave the headings out. A tenth of a degree swings a station 50 m farther on by 9 cm.
-        np.arange(n_steps) => np.ones(n_steps)
-        Each of your heading errors swings one step. It swings *all* later steps.
-        np.arange(n_steps) => np.arange(1, n_steps + 1)
-        This is close, but you count one step too many. The turn of a step swings only the steps after it.
-        np.arange(n_steps) => (n_steps - 1)
-        You let the first heading swing the whole row, but you forget the others.
-        np.arange(n_steps) => np.full(n_steps, n_steps)
-        All of your heading errors swing the whole row. The later ones have fewer steps left to swing.
-        n_steps * sigma_place**2 => sigma_place**2
-        n_steps * sigma_place**2 => (n_steps * sigma_place) ** 2
-        The headings are right. Every step has a place error of its own, so add up n variances.
-        np.sum((behind * sigma_heading) ** 2) => np.sum(behind * sigma_heading) ** 2
-        ... => return n_steps * sigma_place + sigma_heading * spacing * n_steps * (n_steps - 1) / 2
-        You add up errors or sigmas. Independent errors partly cancel, so add up their squares, the variances.
-        np.sqrt( => (
-        That is the variance, in square metres. The task asks for sigma.
-        spacing * np.arange(n_steps) => np.arange(n_steps)
-        You have not used the spacing. The longer a step, the farther it swings.
-        n_steps * sigma_place**2 + =>
-        The headings are right. But the places are wrong by themselves, too, and you left these errors out.
-    """),
+    }),
 ]

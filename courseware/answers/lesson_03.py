@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 from courseware.lessons.kit.values import as_numbers
 
 
@@ -89,94 +89,18 @@ EXERCISES = [
     ), "warm-up", cases={
         "nothing drawn": lambda rng: (np.ones((3, 4)), 0.125, 30.0),
         "a corridor's planes": lambda rng: (np.linspace(0.0, 0.9999, 9)[None], 0.125, 10.0),
-    }, mistakes="""
-        near * far / (far - b * (far - near)) => near + b * (far - near)
-        You spread b evenly between near and far, but b is not linear in Z. Solve the equation of b for Z.
-        (far - b * (far - near)) => (near + b * (far - near))
-        At b = 0 your depth is far, but it must be near. Have near and far changed places?
-        np.where(b < 1, depth, np.inf) => depth
-        depth, np.inf => depth, np.nan
-        Yours is right, except where b = 1. Nothing was ever drawn there, so the depth is inf: not far, not nan.
-        near * far / (far - b * (far - near)) => 2 * near * far / (far + near - b * (far - near))
-        That formula is for buffer values from -1 to 1. Here b runs from 0 (near) to 1 (far).
-        near * far / => far /
-        At b = 0 the depth must be near. What is missing above the fraction line? Check the units.
-        b * (far - near)) => b * far - near)
-        Mind the brackets: b multiplies the whole of far - near.
-        b < 1 => ~np.isclose(b, 1)
-        A b just below 1 is a far surface, but yours makes it inf. Only b = 1 itself was never drawn.
-        ... => with np.errstate(all="ignore"): return far * (b - near) / (b * (far - near))
-        That is the equation for b itself, with b in place of Z. Solve it for Z.
-        near * far / (far - b * (far - near)) => near / np.where(b < 1, 1 - b, 1)
-        near / (1 - b) holds for an infinite far plane. Here b = 1 would lie at far, so keep far in.
-    """),
+    }, example=(([0, 0.5, 0.9, 1], 0.1, 30), [0.1, 0.199, 0.971, np.inf])),
     Exercise("03.2", depth_on_edge, lambda rng: (
         *rng.permutation(rng.uniform([0.5, 4.0], [3.0, 20.0])), np.array([0.0, 1.0, *rng.uniform(0.05, 0.95, 6)]),
-    ), cases={"ends equally far": lambda rng: (3.0, 3.0, np.linspace(0, 1, 5))}, mistakes="""
-        ... => return (1 - s) * z_start + s * z_end
-        You mix Z itself. On the screen 1/Z changes evenly, so mix 1/Z, then turn it over.
-        1 / ((1 - s) / z_start + s / z_end) => (1 - s) / z_start + s / z_end
-        This is 1/Z, in 1 / metres. Turn it over at the end.
-        ... => return depth_on_edge(z_end, z_start, s)
-        The ends have changed places. s = 0 is the start and must give z_start.
-        ... => return z_start ** (1 - s) * z_end**s
-        You mix the logarithms of Z. On the screen 1/Z changes evenly.
-        ... => return depth_on_edge(min(z_start, z_end), max(z_start, z_end), s)
-        You walk from the nearer end. s counts from z_start, even where that is the farther one.
-        (1 - s) / z_start => 1 / z_start
-        At s = 1 only z_end may be left. By how much must the share of z_start shrink?
-        / z_start + s / z_end => * z_start + s * z_end
-        You mix first and turn over then. Turn each depth over first, because 1/Z is mixed.
-        ... => return 0 * s + depth_on_edge(z_start, z_end, 0.5)
-        That is the depth half way, at s = 0.5, everywhere. Where is s?
-    """),
+    ), cases={"ends equally far": lambda rng: (3.0, 3.0, np.linspace(0, 1, 5))}),
     Exercise("03.3", nearest_surface, lambda rng: (
         np.where(rng.random((4, 5, 6)) < 0.3, np.inf, rng.uniform(0.1, 15, (4, 5, 6))), *rng.uniform([0.5, 8], [1, 12]),
     ), cases={
         "depths of near and far themselves":  # and a pixel that nothing covers
             lambda rng: (np.array([[[0.5, 8.0, np.inf]], [[2.0, 9.0, np.inf]], [[0.4, np.inf, 0.1]]]), 0.5, 8.0),
         "one surface": lambda rng: (np.array([[[0.5, 3.0, 12.0, np.inf]]]), 0.75, 10.0),
-    }, mistakes="""
-        np.where(seen, layers, np.inf).min(axis=0) => np.abs(np.where(seen, layers, -np.inf).max(axis=0))
-        Your pixels keep the farthest surface, but the camera sees the nearest.
-        ... => return nearest_surface(layers.min(axis=0)[None], near, far)
-        In yours a surface before the near plane hides the ones behind it. Drop it first, then take the least.
-        ... => return np.clip(layers, near, far).min(axis=0)
-        ... => return np.where(np.isinf(layers), np.inf, np.clip(layers, near, far)).min(axis=0)
-        You move a surface outside near and far onto a plane (np.clip does that), but it is not seen at all.
-        ... => return layers.min(axis=0)
-        & (layers <= far) =>
-        You have not used near and far, or one of them alone. A surface outside of both is not seen.
-        ... => return nearest_surface(layers[:1], near, far)
-        Yours looks at the first layer alone. Compare all K of them, pixel by pixel.
-        .min(axis=0) => .min(axis=0, initial=far)
-        ... => image = nearest_surface(layers, near, far); return np.where(np.isfinite(image), image, 0.0)
-        Where nothing is seen the depth must be inf: not far, not nan, and not 0, which is right at the lens.
-        >= near => > near and also <= far => < far
-        This is close, but a surface exactly on the near or the far plane is still seen.
-        .min(axis=0) => [len(seen) - 1 - seen[::-1].argmax(axis=0), *np.indices(seen[0].shape)]
-        In yours the surface drawn last wins, whatever its depth. Compare with what is there already.
-    """),
+    }, example=(([[[0.3]], [[5]], [[2]]], 0.5, 10), [[2]])),
     Exercise("03.4", cut_at_near, triangles, "challenge", verify=off_the_cut, cases={
         "a corner on the plane": lambda rng: (triangle(rng, 0.1, -1.0, 3.0), 0.1),
-    }, mistakes="""
-        ... => return corners[corners[:, 2] >= near]
-        You drop the corners before the plane but cut no edge. Where one crosses the plane a corner is new.
-        ... => return corners if (corners[:, 2] >= near).all() else np.empty((0, 3))
-        You throw the whole triangle away that reaches before the plane. Then the floor at your feet is gone.
-        ... => return np.maximum(corners, [-np.inf, -np.inf, near])
-        You push corners onto the plane. That bends the triangle, but it must keep lying in its own plane.
-        ... => return corners
-        You cut nothing. Which part of the triangle lies before the near plane?
-        (near - a[2]) / (b[2] - a[2]) * (b - a) => (b - a) / 2
-        You halve every edge that is cut. It meets the plane where its Z is near, rarely at the middle.
-        a + (near - a[2]) => b - (near - a[2])
-        You measure the share of an edge from the wrong end.
-        (near - a[2]) / => (0 - a[2]) /
-        You cut where Z is 0, at the lens itself. The near plane lies a little before it.
-        kept = [] => kept, new = [], [] and also kept.append(a + => new.append(a + and also (kept) => (kept + new)
-        The corners are right. Put each new one where its edge is, or the polygon crosses itself.
-        (near - a[2]) / (b[2] - a[2]) => (1 / near - 1 / a[2]) / (1 / b[2] - 1 / a[2])
-        1/Z changes evenly on the *screen*. Along an edge in space Z itself does, so take the share from Z.
-    """),
+    }),
 ]

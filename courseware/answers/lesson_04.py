@@ -3,7 +3,7 @@
 import numpy as np
 
 from course_lib.rendering.camera import DepthCamera
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 
 
 def range_to_depth(ranges, rays):
@@ -84,22 +84,7 @@ EXERCISES = [
     Exercise("04.1", range_to_depth, range_image, "warm-up", cases={
         "the task's ray": lambda rng: (np.array([[5.0]]), np.array([[[0.75, 0.0, 1.0]]])),
         "nothing measured": lambda rng: (np.full((3, 4), np.nan), DepthCamera.from_fov(4, 3, 60, 45).rays()),
-    }, mistakes="""
-        ... => return ranges
-        That is still the range along the ray. How long is a ray whose forward component is one?
-        np.linalg.norm(rays, axis=-1) => (rays**2).sum(axis=-1)
-        You divide by the square of the ray's length. Take the root.
-        np.linalg.norm(rays, axis=-1) => np.linalg.norm(rays)
-        You divide by one number for the whole image. Each ray has a length of its own: which axis?
-        np.linalg.norm(rays, axis=-1) => np.abs(rays).sum(axis=-1)
-        You add the components of the ray. Its length is the root of the sum of their squares.
-        ranges / => np.nan_to_num(ranges) /
-        A pixel without a measurement stays NaN. A depth of 0 m would be a surface at the lens.
-        ... => with np.errstate(all="ignore"): return ranges / np.linalg.norm(rays[..., :2], axis=-1)
-        Your ray has no forward component. The length of (x, y, 1) is not the length of (x, y).
-        np.linalg.norm(rays, axis=-1) => np.hypot(rays[..., 0], 1)
-        Rays are tilted to the side *and* up and down. Both x and y count, and you use one of them.
-    """),
+    }, example=(([[5]], [[[0.75, 0, 1]]]), [[4]])),
     Exercise("04.2", range_from_two, lambda rng: two_readings(
         rng, f := rng.uniform(14e6, 16e6), f * rng.uniform(1.25, 1.4),
     ), cases={
@@ -107,63 +92,12 @@ EXERCISES = [
         "at 15 and 20 megahertz": lambda rng: two_readings(rng, 15e6, 20e6),
         "at 20 and 15 megahertz": lambda rng: two_readings(rng, 20e6, 15e6),
         "clocks nearly in step": clocks_nearly_in_step,
-    }, mistakes="""
-        ... => return read_a
-        That is the reading at f_a. The surface may be one or more turns of c / 2f_a farther away.
-        (candidates - read_b[:, None] + turn_b / 2) % turn_b - turn_b / 2 => candidates % turn_b - read_b[:, None]
-        Mind the seam at f_b: 0.1 m and 7.4 m are neighbours on a circle of 7.5 m. Measure on the circle.
-        (candidates - read_b[:, None] + turn_b / 2) % turn_b - turn_b / 2 => candidates - read_b[:, None]
-        You compare a range with a reading. What would the camera *read* at f_b for each candidate?
-        np.arange(farthest // turn_a + 1) => np.arange(2)
-        You try no turn or one turn. A surface can be farther away: how many turns fit below `farthest`?
-        ... => return range_from_two(read_b, f_b, read_a, f_a, farthest)
-        You add turns to read_b. The two readings differ by the noise, and the task starts from read_a.
-        2 * f_a => f_a and also 2 * f_b => f_b
-        Your turns are c / f long. The light goes out and back, so a turn is c / 2f.
-        np.where(candidates <= farthest, miss, np.inf) => miss
-        np.where(candidates <= farthest, miss, np.inf) => miss and also turn_a + 1 => turn_a + 4
-        One of your ranges lies beyond `farthest`. Leave such candidates out before you take the best.
-        miss, np.inf => miss >= 0.2, np.inf
-        You stop at the first range that fits roughly. A later one may fit better: take the best of all.
-    """),
+    }),
     Exercise("04.3", pole_share, pole_and_wall, tolerance=1e-3, cases={
         "one paint": lambda rng: (*np.array([[3.0], [2.0], [0.5], [4.0], [0.5]]), 15e6),
-    }, mistakes="""
-        ... => return (r2 - r) / (r2 - r1)
-        You mix ranges. The pixel adds phasors: the nearer surface sends more light and pulls harder.
-        np.sin(k * (r - r1)) => (r - r1) and also np.sin(k * (r2 - r)) => (r2 - r)
-        You weigh the ranges by the light. The pixel adds *phasors*, and it reads the angle of their sum.
-        * np.sin(k * (r - r1)) => and also * np.sin(k * (r2 - r)) =>
-        Your share is the same whatever the pixel reads: where is r? It is the angle of the sum of both phasors.
-        return wall => return pole
-        That is the share on the farther surface.
-        rho1 / => 1 / and also rho2 / => 1 /
-        Both of your surfaces have the same paint. You do not use rho1 and rho2.
-        rho1 / r1**2 => rho1 and also rho2 / r2**2 => rho2
-        r1**2 => r1 and also r2**2 => r2
-        Your far surface is too bright. The amplitude falls with the range *squared*.
-        4 * np.pi => 2 * np.pi
-        Your phase is not 4 pi f r / c. A turn is 2 pi, and the light travels 2 r, out and back: count each once.
-        rho1 / r1**2 * => and also rho2 / r2**2 * =>
-        That is the pole's share of the *light*. Of the area? A share of it sends rho / r^2 as much light.
-    """),
+    }),
     # The tolerance of 04.4 lets a simulation with a hundred thousand draws pass, that of 04.3 a search on a fine grid.
     Exercise("04.4", nearest_of, lambda rng: (int(rng.integers(3, 41)),), "challenge", tolerance=0.004, cases={
         "one point": lambda rng: (1,), "two points": lambda rng: (2,), "sixteen points": lambda rng: (16,),
-    }, mistakes="""
-        return mean => return -np.sqrt(2 * np.log(n))
-        sqrt(2 ln n) is the limit for very large n. For 16 it is a third too much: integrate.
-        ... => return 0.0, n**-0.5
-        That is the *mean* of n points. The z-buffer keeps the least of them.
-        np.sqrt(np.sum((x - mean) ** 2 * density)) => 1.0
-        Your mean is right. But the least of n scatters less than one point, and more than a mean of n.
-        (x - mean) => x
-        Your mean is right. Your second value is the root of the mean square: subtract the mean first.
-        return mean => return norm.ppf(1 - 0.5 ** (1 / n))
-        That is the median of the least. Its distribution is lopsided, so the mean lies farther out.
-        ** (n - 1) => ** n
-        In the density of the least of n the power of 1 - Phi is n - 1. In yours it is n.
-        density = n * => density =
-        Your density does not integrate to 1. Any of the n points may be the least, so it has a factor n.
-    """),
+    }, example=((2,), (-0.564, 0.826))),
 ]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from course_lib.geometry import wrap_angle
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 
 
 def spread_after(spread0, sigma, t):
@@ -103,111 +103,20 @@ EXERCISES = [
     Exercise("05.1", spread_after, lambda rng: (*rng.uniform(0, 0.6, (2, 6)), rng.integers(2, 60)), "warm-up", cases={
         "no frame": lambda rng: (*rng.uniform(0.1, 0.5, (2, 6)), 0),
         "no noise in yaw": lambda rng: (rng.uniform(0.1, 0.5, 6), rng.uniform(0.1, 0.5, 6) * [1, 1, 1, 1, 1, 0], 9),
-    }, mistakes="""
-        ... => return spread0 + np.sqrt(t) * sigma
-        You add standard deviations. Independent things add their variances: square, add, take the root.
-        spread0**2 + t * sigma**2 => t * sigma**2
-        You forgot that the cloud has a spread at the start. Its variance counts, too.
-        t * sigma**2 => (t * sigma) ** 2
-        Your noise grows with t. Each frame adds one variance, so the variance grows with t, not its square.
-        ... => return spread0 + t * sigma
-        In yours all steps point the same way. They are random: variances add, not standard deviations.
-        t * sigma**2 => sigma**2
-        That is the spread after one frame. Where is t?
-        t * sigma**2 => max(t - 1, 0) * sigma**2
-        t * sigma**2 => (t + 1) * sigma**2
-        You count one frame too many or too few. After t frames there were t steps; the start is no step.
-    """),
-    Exercise("05.2", propagate_own_axes, particles_and_draws, cases={"four headings": four_headings}, mistakes="""
-        particles[:, 5] => 0 * particles[:, 5]
-        You add forward to x and left to y. That holds for yaw 0 only: turn the step by the particle's yaw.
-        particles[:, 5] => -particles[:, 5]
-        Your steps turn the wrong way. From the body to the world you turn by +yaw.
-        particles[:, 5] => particles[0, 5]
-        All your particles step in the direction of the first one. Each has a yaw of its own.
-        forward, left, yaw => left, forward, yaw
-        draws[:, 0], sigma_left * draws[:, 1] => draws[:, 1], sigma_left * draws[:, 0]
-        You swapped forward and left. The first column of `draws` is forward.
-        sigma_left * => -sigma_left *
-        The sign of the step to the left is wrong. Left is forward turned by +90 degrees, (-sin yaw, cos yaw).
-        particles[:, 5] => np.deg2rad(particles[:, 5])
-        The yaw of a particle is in radians already, and np.sin and np.cos take radians.
-        - left * np.sin(yaw) => and also forward * np.sin(yaw) + left * np.cos(yaw) => left * np.sin(yaw)
-        Each of the two steps has a part in x *and* a part in y: four products in all.
-        sigma_forward * => and also sigma_left * =>
-        Your steps are about a metre long. A step is a standard normal draw times sigma.
-        return moved => return moved - particles
-        These are the steps alone. Add them to the particles.
-    """),
+    }, example=((0.3, 0.1, 16), 0.5)),
+    Exercise("05.2", propagate_own_axes, particles_and_draws, cases={"four headings": four_headings}),
     Exercise("05.3", share_near, cloud_and_state, cases={
         "yaws at the seam": yaws_at_the_seam,
         "nobody near": lambda rng: (rng.normal([10, 0, 1, 0, 0, 0], 0.2, (12, 6)), np.eye(6)[0] * 20, 0.5, 0.2),
         "a radius and an angle of 0": a_radius_and_an_angle_of_0,
-    }, mistakes="""
-        5] => 4]
-        Compare the yaw, the last of the six, and nothing else. The task ignores roll and pitch.
-        np.abs(wrap_angle(particles[:, 5] - state[5])) => (particles[:, 5] - state[5]) % (2 * np.pi)
-        Wrap to -pi ... pi, then take the absolute value, so that small turns to the right are small.
-        near = np.hypot( => near = np.hypot(particles[:, 2] - state[2], np.hypot( and also <= radius => ) <= radius
-        Your distance includes z. Near on the floor means x and y only.
-        near & turned => near | turned
-        near & turned => near
-        Near in place *and* in heading: in yours one of them is enough.
-        np.mean => np.sum
-        You count the particles. A share is that count divided by their number.
-        return => return 1 -
-        That is the share of the particles that are *not* near.
-        np.hypot(particles[:, 0] - state[0], particles[:, 1] - state[1]) => np.abs(particles - state)[:, :2].sum(axis=1)
-        <= radius => ** 2 <= radius
-        The distance is the root of dx^2 + dy^2: not its square, and not dx + dy.
-        np.mean(near & turned) => np.mean(near) * np.mean(turned)
-        You multiply two shares. Ask of each particle whether it passes both tests, then take one mean.
-        np.mean(near & turned) => np.sum(near & turned) / max(np.sum(near), 1)
-        You divide by the particles that are near in place. The task asks for a share of all particles.
-    """),
+    }),
     Exercise("05.4", bayes_step, corridor_with_doors, cases={
         "nearly at the end": lambda rng: (*np.array([[0, 0.3, 0.7], [0.1, 0.9, 0]]), np.arange(3) == 2, True, 0.8, 0.1),
         "a sure sensor": lambda rng: (np.full(6, 1 / 6), np.array([0, 1.0]), np.arange(6) % 3 == 0, False, 1.0, 0.0),
         "more moves than cells": lambda rng: (np.ones(4) / 4, np.ones(7) / 7, np.arange(4) == 2, False, 0.9, 0.2),
         "at rest": lambda rng: corridor_with_doors(rng, n_moves=1),
-    }, mistakes="""
-        np.minimum(np.arange(len(bel)) + k, len(bel) - 1) => (np.arange(len(bel)) + k) % len(bel)
-        Your corridor is a ring: what passes its end comes in at its start. Here it stops at the end.
-        p * bel) => p * bel * (np.arange(len(bel)) + k < len(bel)))
-        You lose what would pass the last cell, and dividing by the sum hides it. It stops there.
-        / corrected.sum() =>
-        Your belief does not sum to 1: what is eta for?
-        ... => bel = bayes_step(bel, [1], doors, seen, hit, false_alarm); return bayes_step(bel, moves, doors, 1, 1, 1)
-        You look first and move then. The sensor reports after the move.
-        (p_door if seen else 1 - p_door) => p_door
-        `seen` says whether a door was seen. If none was seen, that tells you something, too.
-        np.where(doors, => np.where(doors == seen, and also p_door if seen else 1 - p_door => p_door
-        Door or none, seen or not: four cases, two numbers. Where no door is, seeing none has 1 - false_alarm.
-        ... => return bayes_step(bel, moves, doors, 1, 1, 1)
-        That is the prediction alone. The correction by the report of the sensor is missing.
-        np.add.at(predicted, target, p * bel) => predicted[target] += p * bel
-        `a[index] += ...` counts an index that comes twice only once. Use np.add.at, or loop over cells.
-        np.minimum(np.arange(len(bel)) + k, len(bel) - 1) => (c := np.arange(len(bel))) + k * (c + k < len(bel))
-        In yours a wagon that would pass the end stays where it was. It rolls on and stops in the last cell.
-    """),
+    }, example=(([0.5, 0.5, 0], [0, 1], [False, True, False], True, 0.8, 0.2), [0, 0.8, 0.2])),
     Exercise("05.5", min_sigma, lambda rng: (
         rng.uniform(0.02, 0.3), int(rng.integers(50, 2000)), int(rng.integers(20, 500)), rng.uniform(0.6, 0.99),
-    ), "challenge", cases={"one frame": lambda rng: (0.1, 20, 1, 0.9)}, mistakes="""
-        one_frame = p ** (1 / frames) => one_frame = p
-        That holds for one frame. It must go well in *every* one of them: multiply the probabilities.
-        (1 - one_frame) ** (1 / n) => (1 - p) ** (1 / (n * frames))
-        Yours reaches the step in at least one of all frames. It has to in every single one.
-        (1 - one_frame) ** (1 / n) => one_frame ** (1 / n)
-        You ask that *all* particles stay below the step. One that reaches it is enough: 1 - Phi^n.
-        (1 - one_frame) ** (1 / n) => 1 - one_frame ** (1 / n)
-        You ask that *every* particle makes the step. One of the n is enough.
-        p ** (1 / frames) => p**frames
-        You raise p to the power of the frames. p is the probability for all of them: undo that power.
-        (1 - one_frame) ** (1 / n) => 1 - one_frame
-        That is a sigma for one particle. Where is n? One minus q is Phi to the power of n.
-        (1 - one_frame) ** (1 / n) => (1 + (1 - one_frame) ** (1 / n)) / 2
-        A step backwards of the same size does not help. Only one side of the normal distribution counts.
-        norm.ppf((1 - one_frame) ** (1 / n)) => np.sqrt(2 * np.log(n))
-        That keeps up in the *mean*, as in *Measure*. With probability p for all frames it takes more: use p.
-    """),
+    ), "challenge", cases={"one frame": lambda rng: (0.1, 20, 1, 0.9)}, example=((0.1, 20, 1, 0.9), 0.0811)),
 ]

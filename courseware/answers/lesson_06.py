@@ -4,7 +4,7 @@
 import numpy as np
 from scipy.stats import norm
 
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 
 
 def raw_score(hidden, alpha):
@@ -80,95 +80,20 @@ def weighted_samples(rng: np.random.Generator) -> tuple:
 EXERCISES = [
     Exercise("06.1", raw_score, lambda rng: (rng.uniform(0, 1, 5), rng.uniform(0.01, 1.0)), "warm-up", cases={
         "nobody or all hidden": lambda rng: (np.array([0.0, 1.0, 0.0, 0.5]), 0.1),
-    }, mistakes="""
-        ... => return alpha / (alpha + (1 - hidden) * 0.02 + hidden * 2)
-        You average the differences first. Equation (8) averages *terms*: a large difference hardly matters there.
-        (1 - hidden) => hidden and also + hidden => + (1 - hidden)
-        You exchanged the shares: `hidden` of the pixels differ by 2 m, the rest by 0.02 m.
-        + hidden * alpha / (alpha + 2) =>
-        You leave the hidden pixels out. They were measured, so each of them counts its small term.
-        ... => return alpha / (alpha + 0.02) + 0 * hidden
-        You leave the hidden pixels out of l and of m. The m of l / m is the number of all measured pixels.
-        (1 - hidden) * alpha => alpha
-        Only a share 1 - `hidden` of the pixels differs by 0.02 m: the two shares sum to 1.
-        (1 - hidden) * alpha => (1 - hidden) * 0.02 and also hidden * alpha => hidden * 2
-        That is what the pixels lose, d / (alpha + d). Equation (8) subtracts it from 1.
-        ... => return (alpha / (alpha + 0.02)) ** (1 - hidden) * (alpha / (alpha + 2)) ** hidden
-        You multiply the terms. Equation (8) adds them up, and l / m is their mean.
-    """),
+    }, example=(([0, 0.5, 1], 0.1), [0.833, 0.44, 0.048])),
     Exercise("06.2", weigh_rightly, images_with_holes, cases={
         "a lucky pixel": a_lucky_pixel,
         "all alike": lambda rng: (np.full((2, 3), 2.0), np.full((4, 2, 3), 2.1), 0.1, 0.01),
         "nothing measured": lambda rng: (np.full((2, 3), np.nan), rng.uniform(1, 6, (5, 2, 3)), 0.1, 0.3),
-    }, mistakes="""
-        ... => return given_code(measured, images, alpha, beta, ["alike", "exponent"])
-        In yours a particle that looks into a hole pays nothing. One fault is left, in the first two lines.
-        ... => return given_code(measured, images, alpha, beta, ["holes", "exponent"])
-        One fault is left: what does (9) give where all agree, and what is exp(-1 / beta^2) at beta = 0.01?
-        ... => return given_code(measured, images, alpha, beta, ["holes", "alike"])
-        / beta**2 => / beta
-        One fault is left: compare the exponent with (10) at a beta other than 1. What is squared?
-        ... => return given_code(measured, images, alpha, beta, ["exponent"])
-        ... => return given_code(measured, images, alpha, beta, ["alike"])
-        ... => return given_code(measured, images, alpha, beta, ["holes"])
-        One fault is mended, two are left. Try a hole in the map, particles all alike, and a small beta.
-        ... => return given_code(measured, images, alpha, beta)
-        All three faults are still in. Try a hole, particles all alike, and a small beta.
-        np.exp(-((normalized - 1) ** 2) / beta**2) => normalized
-        You leave (10) out. The normalized likelihood itself, divided by its sum, is not yet the weight.
-        (l - l.min()) / (l.max() - l.min()) => l / l.max()
-        You divide by the largest likelihood. Equation (9) subtracts the least first: the worst gets 0.
-        valid = np.isfinite(measured) => valid = np.isfinite(measured) & np.isfinite(images).all(axis=0)
-        You leave out, for all, a pixel that *any* particle misses. Leave out only what was not measured.
-        valid = np.isfinite(measured) => measured = np.nan_to_num(measured); valid = measured > -1
-        You take a pixel without a measurement for a depth of 0 m. It says nothing: leave it out for all.
-        w / w.sum() => w / w.max()
-        Equation (11) makes the *sum* of the weights 1.
-    """),
+    }, example=(([[2, 2]], [[[2, np.inf]], [[2.1, 2.1]], [[2, 2.1]]], 0.1, 1), [0.212, 0.212, 0.576])),
     Exercise("06.3", min_likelihood, lambda rng: (
         rng.uniform(100, 900, int(rng.integers(5, 12))), rng.uniform(0.05, 0.6),
     ), cases={
         "the paper's beta": lambda rng: (rng.uniform(600, 900, 9), 0.01),
         "a large beta": lambda rng: (rng.uniform(100, 900, 6), 1.5),  # the worst particle has more than one half
-    }, mistakes="""
-        ... => return 1 - beta * np.sqrt(np.log(2))
-        That is the normalized likelihood. Turn (9) around, too, to get back to l.
-        beta * np.sqrt(np.log(2)) => beta**2 * np.log(2)
-        Equation (10) says that the *square* of the distance is beta^2 ln 2: take the root of all of it, once.
-        np.log(2) => np.log10(2)
-        The natural logarithm, np.log, undoes exp. Yours is the logarithm to base 10.
-        ... => return likelihoods.max() * (1 - beta * np.sqrt(np.log(2)))
-        The distance is between normalized likelihoods. Equation (9) divides by l_max - l_min: undo that.
-        beta * np.sqrt(np.log(2)) => beta
-        At one beta below the best w is exp(-1), about 0.37. The task asks for one half.
-        likelihoods.min() + normalized => normalized
-        Almost: l_min is missing. Equation (9) subtracts it, so add it again.
-        np.log(2) => 2 * np.log(2)
-        That is the half width of the usual Gaussian, with a 2 below. Equation (10) has none.
-        ... => return likelihoods[likelihoods >= min_likelihood(likelihoods, beta)].min()
-        You choose one of the particles. The task asks for the exact l of one half, where no particle need be.
-        normalized = 1 - beta * np.sqrt(np.log(2)) => normalized = 0.5
-        There the *normalized likelihood* is one half. Its weight is less: solve (10) for w = 1/2.
-    """),
+    }, example=(([100, 300, 500], 0.5), 333.5)),
     Exercise("06.4", importance_mean, weighted_samples, "challenge", cases={
         "target is proposal": lambda rng: (x := rng.normal(0, 1, 30), norm.pdf(x), norm.pdf(x)),
         "one outweighs all": lambda rng: (x := np.linspace(-2, 2, 9), 1e-30 * norm.pdf(x, 1.5, 0.2), norm.pdf(x)),
-    }, mistakes="""
-        np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.sqrt(np.sum((w * (x - mean)) ** 2) * len(x) / (len(x) - 1))
-        Your mean is right. No n / (n - 1) here: the variance is a sum over samples, and the example gives 0.354.
-        w * (x - mean)) => w * x)
-        Your mean is right. In the error take deviations from this mean, not the samples themselves.
-        np.sqrt(np.sum((w * (x - mean)) ** 2)) => x.std() / np.sqrt(len(x))
-        Your mean is right. The spread in your error is that of the unweighed samples: derive it.
-        np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.sqrt(np.sum(w * (x - mean) ** 2))
-        Your mean is right. That is the spread of the target; we know its mean better than that.
-        np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.sqrt(np.sum(w * (x - mean) ** 2) / len(x))
-        Your mean is right. Spread over root n holds for equal weights. Here some samples count for many.
-        np.sqrt(np.sum((w * (x - mean)) ** 2)) => np.sqrt(np.sum(w * (x - mean) ** 2) * np.sum(w**2))
-        Your mean is right. Spread over root N_eff is near, but heavy samples lie together: derive it.
-        target / proposal => target
-        You weigh by the target alone. The samples are dense already where the proposal is: divide by it.
-        w / w.sum() => w / len(x)
-        You divide by n. The target's scale is not known, so divide by the sum of the weights.
-    """),
+    }, example=(([0, 1, 2], [1, 2, 1], [1, 1, 1]), (1.0, 0.354))),
 ]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 
 
 def nearest_distances(estimated, path):
@@ -78,45 +78,11 @@ EXERCISES = [
         "a single estimate": lambda rng: (rng.normal(size=(1, 3)), rng.normal(size=(2, 3))),
         # The nearest point in space, on the hump, is not the nearest on the floor plan.
         "a hump in the floor": lambda rng: (np.array([[1.3, 0.1, 1]]), np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0.9]])),
-    }, mistakes="""
-        path[:, :2] - p => path - p and also estimated[:, :2] => estimated
-        Your distance includes z, but the camera is a metre above the line on the floor. Use x and y only.
-        np.min(distances, axis=1) => [d[((path - p) ** 2).sum(axis=1).argmin()] for d, p in zip(distances, estimated)]
-        You search in space and measure on the floor. Leave out z before you search, not after.
-        np.min(distances, axis=1) => [d[np.abs(path[:, 0] - p[0]).argmin()] for d, p in zip(distances, estimated)]
-        You take the point with the nearest x. Where the path bends, another point may be nearer.
-        path[:, :2] - p, axis=1 => path[:, :2] - p, 1, axis=1
-        You add the ways along x and y. The straight way is the root of the sum of their squares.
-        ... => return np.linalg.norm(estimated[:, :2] - path[: len(estimated), :2], axis=1)
-        You compare point k with estimate k. Nobody says that they belong together: search the whole path.
-        np.min(distances => np.argmin(distances
-        argmin tells which point is nearest, its number. The task asks how far it is, in metres.
-        np.min(distances => np.mean(distances
-        You give the mean distance to all points of the path. Only the nearest one counts.
-        ... => return np.array([np.linalg.norm(path[:, :2] - p) for p in estimated[:, :2]])
-        You sum over the whole path. np.linalg.norm needs axis=1 to give one distance for each point.
-    """),
+    }, example=(([[1.0, 0.4, 1.0]], [[0, 0, 0], [1, 0, 0], [2, 0, 0]]), [0.4])),
     Exercise("08.2", table_row, errors_of_a_run, tolerance=1e-9, cases={
         # No scatter, and yet an error: just the limit.
         "all errors equal": lambda rng: (np.full(int(rng.integers(3, 9)), 0.30),),
-    }, mistakes="""
-        np.median(errors) => np.sort(errors)[len(errors) // 2]
-        For an even number of errors yours is one of the middle two. A median lies halfway between.
-        np.sqrt(np.mean(errors**2)) => np.std(errors)
-        np.std measures the scatter about the mean: a constant error of 5 m would get 0. Take it about zero.
-        np.sqrt(np.mean(errors**2)) => np.mean(errors)
-        Your sigma is the mean error. Square the errors, take the mean, then the root.
-        np.sqrt(np.mean(errors**2)) => np.sqrt(np.sum(errors**2)) / len(errors)
-        Root *mean* square: divide the sum of the squares by T before you take the root, not after it.
-        np.mean(errors**2) => np.sum(errors**2) / (len(errors) - 1)
-        You divide by T - 1, which is for scatter about an estimated mean. Here it is the mean of T squares.
-        errors <= 0.30 => errors <= 3 * np.sqrt(np.mean(errors**2))
-        You use three of the run's own sigma, so a bad run gets a wide gate. The gate is 0.30 m for all.
-        np.mean(errors <= 0.30) => 100 * np.mean(errors <= 0.30)
-        Your last number is in percent. Give a share from 0 to 1.
-        errors <= 0.30 => errors > 0.30
-        Your last number is the share of the errors beyond 0.30 m. The task asks for the others.
-    """),
+    }, example=(([0.1, 0.1, 0.1, 0.5],), (0.1, 0.265, 0.75))),
     Exercise("08.3", lost_since, scores_with_dips, cases={
         # Rows that are one too short, with single good scores between them: nothing may be carried over.
         "short dips only": lambda rng: (np.array([0.2 if c == "l" else 0.7 for c in "llllhllllhhhllhlllh"]), 0.5, 5),
@@ -126,30 +92,7 @@ EXERCISES = [
         "fewer scores than patience": lambda rng: (np.array([0.1, 0.2]), 0.5, 4),
         "lost from the start": lambda rng: (np.full(6, 0.1), 0.5, 3),
         "never low": lambda rng: (np.full(8, 0.9), 0.5, 2),
-    }, mistakes="""
-        in_a_row == patience => in_a_row == 1
-        You raise the alarm at the first low score. A person who walks by would do that.
-        else 0 => else in_a_row
-        You count all low scores together. Start again from 0 whenever a score is good: in a row.
-        else 0 => else max(in_a_row - 1, 0)
-        A good score sets your counter back by a little only. In a row means: it sets the counter to 0.
-        score < limit => score > limit
-        You count scores *above* the limit. Low ones raise the alarm.
-        in_a_row == patience => in_a_row > patience
-        You wait one frame too long: the row is complete with its patience-th low score.
-        return frame => return frame - patience + 1
-        You name the frame where the row begins. Nobody can know that yet: name the one where it is complete.
-        in_a_row == patience => frame >= patience - 1 and scores[frame - patience + 1 : frame + 1].mean() < limit
-        You take the mean of a row, where a very low score hides a good one. Each of them must be low.
-        return -1 => return len(scores)
-        If the filter is never lost, you give the number of frames. The task asks for -1.
-        ... => return -1
-        You always give -1. Does the -1 stand inside the loop? It belongs after it.
-        return -1 => return patience - 1
-        return -1 => return patience - 1 if len(scores) >= patience else -1
-        return -1 => return 0
-        If no row is complete, you still name an early frame. argmax gives 0 when it finds nothing: test for that first.
-    """),
+    }, example=(([0.6, 0.4, 0.6, 0.4, 0.3, 0.3], 0.45, 2), 4)),
     Exercise("08.4", effective_frames, length_and_likeness, "challenge", cases={
         "independent frames": lambda rng: length_and_likeness(rng, 0, 0),
         "all the same": lambda rng: length_and_likeness(rng, 1, 1),
@@ -157,24 +100,5 @@ EXERCISES = [
         "a below zero": lambda rng: length_and_likeness(rng, -0.8, -0.2),
         "four frames": lambda rng: (4, 0.5),
         "a long run": lambda rng: (304, 0.99),
-    }, mistakes="""
-        a**k => a
-        You take all pairs for equally alike. Frames k apart have the correlation a^k, which falls.
-        ... => return n * (1 - a) / (1 + a)
-        Close: this is the limit of long runs. Near the ends a frame has fewer neighbours: sum over pairs.
-        (n - k) * a**k => n * a**k
-        How many pairs are k apart? Not n: only n - k.
-        2 * pairs => pairs
-        Every pair counts twice: frame 3 with frame 5, and frame 5 with frame 3.
-        range(1, n) => range(1, 2)
-        You count direct neighbours only. Frames two apart are alike as well, by a * a, and so on.
-        n**2 => n
-        You give the share of the frames that counts. The task asks for their number.
-        n**2 / (n + 2 * pairs) => (n + 2 * pairs) / n
-        You give the factor by which the variance grows. Divide n by it.
-        ... => return min(n, effective_frames(n, a))
-        Errors that take turns, a below 0, cancel: the number may be greater than n.
-        ... => return round(effective_frames(n, a))
-        You round to whole frames. Leave the number as it comes.
-    """),
+    }, example=((4, 0.5), 1.939)),
 ]

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from course_lib.geometry import rotation_exp, rotation_log
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 from courseware.lessons.kit.values import agree, as_numbers
 
 
@@ -113,96 +113,17 @@ EXERCISES = [
     Exercise("09.1", particles_for, lambda rng: tuple(rng.integers([20, 1, 1], [1000, 7, 7]).tolist()), "warm-up", {
         "fewer dimensions": lambda rng: (200, 3, 2),
         "the same dimension": lambda rng: (int(rng.integers(20, 1000)), 4, 4),
-    }, mistakes="""
-        n ** (1 / d) => int(n ** (1 / d))
-        You make the d-th root a whole number, so the spacing changes. Leave all numbers as they come.
-        ... => return int(n ** (d_new / d))
-        You make it a whole number of particles. Leave the number as it is.
-        ... => return n ** (1 / d_new)
-        You take the root of the new dimension, but n fill the *old* one. Take the d-th root, then the power d_new.
-        (n ** (1 / d)) ** d_new => n ** (1 / d) ** d_new
-        a ** b ** c is a ** (b ** c) in Python: set brackets around the d-th root.
-        (n ** (1 / d)) ** d_new => n ** (1 / d) * d_new
-        You multiply by d_new. n ** (1 / d) lie along one edge; they fill d_new edges by a power, not a product.
-        ... => return n ** (d / d_new)
-        Your exponent is upside down: more dimensions need more particles, not fewer.
-        ... => return n ** (d_new - d)
-        From 1 dimension to 2 the number is squared, from 2 to 3 the exponent is 1.5: it is a ratio.
-        ... => return n ** d_new
-        You take n for the number along one axis. It is the number in d dimensions: take its d-th root first.
-    """),
+    }, example=((200, 3, 6), 40000)),
     Exercise("09.2", mean_rotation, weighted_rotations, verify=unbalanced, cases={
         "one rotation": lambda rng: (Rotation.from_rotvec([[0.3, -2.0, 1.0]]).as_matrix(), np.ones(1)),
         "equal rotations": lambda rng: (Rotation.from_rotvec([[0.1, 0.4, 2.5]] * 4).as_matrix(), np.arange(1, 5) / 10),
-    }, mistakes="""
-        return R => return R.T
-        Your matrix is transposed: it is the rotation back.
-        range(20) => range(1)
-        One round is not enough: from the new R the vectors look different. Repeat until nothing moves.
-        R = R @ rotation_exp => S = rotation_exp and also rotations)) => rotations)); R = S @ R
-        Log(R' R_i) is meant in R's own axes, so the step belongs on the right: R Exp(step).
-        R.T @ rotations => rotations @ R.T
-        Log(R_i R') is a turn in the world's axes. In R's own axes it is Log(R' R_i).
-        R.T @ rotations => R @ rotations
-        R R_i is no difference of two rotations: where R_i = R it must be the identity. Which of them is turned back?
-        R = rotations[0] => R = rotations[0]; w = np.full(len(w), 1 / len(w))
-        All rotations count alike in your mean: where are the weights?
-        ... => return np.tensordot(w, rotations, 1)
-        The mean of matrices is no rotation: its columns are shorter than 1. Average Log(R' R_i) instead.
-        ... => return Rotation.from_matrix(rotations).mean(w).as_matrix()
-        You give the rotation nearest to the mean matrix (chordal). It is near, but its sum of w Log is not zero.
-        ... => return rotation_exp(w @ rotation_log(rotations))
-        You average rotation vectors seen from the identity, which may be far away. Take them seen from R.
-        ... => return Rotation.from_euler("ZYX", w @ Rotation.from_matrix(rotations).as_euler("ZYX")).as_matrix()
-        You average roll, pitch and yaw. At a seam, or if you look straight down, this is no mean at all.
-    """),
+    }),
     Exercise("09.3", honesty, errors_and_covariances, cases={
         "one component": lambda rng: (rng.normal(0, 2, (6, 1)), rng.uniform(0.2, 1.0, (6, 1, 1))),
-    }, mistakes="""
-        np.abs(e) <= 3 * np.sqrt(np.diag(C)) => np.all(np.abs(e) <= 3 * np.sqrt(np.diag(C)))
-        You count whole images. Count every component by itself, each by its own sigma.
-        3 * np.sqrt => np.sqrt
-        Your limit is one sigma. The task asks for three.
-        np.abs(e) <= => e <=
-        An error of +4 sigma is outside, and so is one of -4 sigma: take its absolute value.
-        <= 3 => > 3
-        You count the errors outside three sigma. Count the others.
-        solve(C, e) => solve(covariances.mean(axis=0), e)
-        You use one mean covariance for all images. Each image has claimed its own.
-        e @ np.linalg.solve(C, e) / len(e) => np.mean(e**2 / np.diag(C))
-        You use the diagonal of C alone. Errors that go together need the whole inverse: e' C^-1 e.
-        np.linalg.solve(C, e) => C @ e
-        You multiply by C. A large covariance must make the number small: use its inverse.
-        / len(e) =>
-        Your first number grows with the number of components: divide by d, which is errors.shape[1].
-        np.mean(within) => 100 * np.mean(within)
-        Your second number is in percent. Give a share between 0 and 1.
-    """),
+    }),
     Exercise("09.4", fit_motion, points_on_walls, "challenge", tolerance=1e-4, cases={
         "two walls and a person": lambda rng: (np.array([[2.1, 0.5], [2.1, -0.5], [1, 0], [0.5, 1], [-0.5, 1]]),
                                                np.repeat(np.eye(2), [3, 2], axis=0), np.array([2.0, 2, 2, 1, 1]), 0.1),
         "a large turn": a_large_turn,
-    }, mistakes="""
-        motion - np.linalg => motion + np.linalg and also 40 => 10
-        motion - np.linalg => motion + np.linalg and also 40 => 20
-        Your steps lead away from the walls: motion *minus* what the system gives, because r falls along -J.
-        return motion => return motion * [1, 1, 180 / np.pi]
-        Your angle is in degrees. Give radians.
-        r / scale => r
-        You leave `scale` out: r / scale says what is far.
-        w = 1 / (1 + (r / scale) ** 2) ** 2 => w = np.ones(len(r))
-        All points count alike, and the person pulls. Weigh each by 1 / (1 + (r / scale)^2)^2.
-        (1 + (r / scale) ** 2) ** 2 => (1 + (r / scale) ** 2)
-        Your weight is 1 / (1 + (r / scale)^2). The outer square is missing.
-        range(40) => range(1)
-        You take the first step only. Move the points, compute residuals and weights anew, and step again.
-        [[c, -s], [s, c]] => [[c, s], [-s, c]] and also [[-s, -c], [c, -s]] => [[-s, c], [-c, -s]]
-        Your theta has the wrong sign: it turns clockwise. [cos, -sin] is the first row of R.
-        (w[:, None] * J), => (w[:, None] * J) + np.diag([0, 0, 1]), and also [[-s, -c], [c, -s]] => [[0, 0], [0, 0]]
-        Your points are shifted, never turned: the third column of J is n . (dR/dtheta p).
-        [[-s, -c], [c, -s]] => [[0, -1], [1, 0]]
-        Your dR/dtheta is the one at theta = 0. Take it at the theta of each step.
-        w = 1 / (1 + (r / scale) ** 2) ** 2 => w = w if _ else 1 / (1 + (r / scale) ** 2) ** 2
-        You weigh the points once, at the start. Their residuals change with every step, so weigh them anew each time.
-    """),
+    }),
 ]

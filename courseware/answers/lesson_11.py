@@ -4,7 +4,7 @@ import numpy as np
 
 from course_lib.geometry import pose_matrix
 from course_lib.spherical_stereo.panorama import direction_from_angles, direction_to_pixel, pixel_to_direction
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 
 WIDTHS = (640, 1280, 1920)
 
@@ -87,50 +87,13 @@ EXERCISES = [
         "straight ahead": lambda rng: (-0.5, 319.5, 1280, 640), "straight up": lambda rng: (100.0, -0.5, 1280, 640),
         "a column beyond the right edge": lambda rng: (1290.0, 400.0, 1280, 640),
         "a column beyond the left edge": lambda rng: (-20.0, 400.0, 1280, 640),
-    }, mistakes="""
-        -(column + 0.5) / width => (0.5 - (column + 0.5) / width)
-        -(column + 0.5) / width => (0.5 - column / width) and also (row + 0.5) => row
-        That is our own panorama, whose middle is ahead. Here the left edge is ahead, and 0 is a pixel's middle.
-        -(column + 0.5) => (column + 0.5)
-        (0.5 - (row + 0.5) / height) => ((row + 0.5) / height - 0.5)
-        Your picture is mirrored or upside down. Columns run to the right and rows down, so both angles fall with them.
-        flat = np.cos(elevation) => flat = 1
-        Your vectors are longer than 1 off the horizon. x and y shrink with the cosine of the elevation.
-        / width * 2 * np.pi => / width * np.pi
-        / height) * np.pi => / height) * 2 * np.pi
-        The whole width is a whole turn, 2 pi. The whole height is half a turn, pi.
-        (0.5 - (row + 0.5) / height) => (row + 0.5) / height
-        You measure from straight up, so at the horizon yours is 90 degrees. Elevation is 0 there.
-        2 * np.pi => 360 and also * np.pi => * 180
-        np.cos and np.sin take radians, but you give them degrees.
-        (column + 0.5) => column and also (row + 0.5) => row
-        (column + 0.5) => column
-        The numbers 0 of its columns and of its rows are the middles of pixels, so add half a pixel to both.
-        np.sin(elevation)]) => np.sin(elevation)])[[1, 0, 2]]
-        You exchanged the axes. x is ahead (cosine of the azimuth), y is left (its sine), z is up.
-    """),
+    }, example=((959.5, 159.5, 1280, 640), [0.0, 0.707, 0.707])),
     Exercise("11.2", column_gap_deg, two_columns, cases={
         "half a turn": lambda rng: (960.0, 320.0, 1280), "half a turn to the left": lambda rng: (320.0, 960.0, 1280),
         "equal columns": lambda rng: (77.0, 77.0, 1280), "the two edges": lambda rng: (0.0, 1280.0, 1280),
         "u_max of a box across the seam": lambda rng: (1410.0, 130.0, 1280),
         "more than a turn": lambda rng: (10.0, 1900.0, 1280), "nearly two turns": lambda rng: (2500.0, 40.0, 1280),
-    }, mistakes="""
-        (gap + 180) % 360 - 180 => gap - 360 if gap >= 180 else gap + 360 if gap < -180 else gap
-        An `if` takes away one turn at most. Columns beyond the edges may be more than one turn apart.
-        (gap + 180) % 360 - 180 => gap
-        Across the seam your result is nearly a whole turn. Bring the difference back to [-180, 180).
-        (u_from - u_to) => (u_to - u_from)
-        Your sign is wrong. Azimuth grows to the left, where columns get smaller.
-        (gap + 180) % 360 - 180 => abs((gap + 180) % 360 - 180)
-        The sign is lost. Left is positive and right is negative, so wrap the gap with its sign.
-        (gap + 180) % 360 - 180 => gap % 360
-        Your result lies in [0, 360), so 10 degrees to the right become 350.
-        (gap + 180) % 360 - 180 => 180 - (180 - gap) % 360
-        Half a turn is -180 here, never +180, because the range [-180, 180) does not hold its right end.
-        (gap + 180) % 360 - 180 => gap if abs(gap) < 180 else 360 - gap
-        (gap + 180) % 360 - 180 => np.sign(gap) * min(abs(gap), 360 - abs(gap))
-        Across the seam the shorter way goes to the other side. Add whole turns to the gap, or take them away.
-    """),
+    }, example=((1260, 20, 1280), -11.25)),
     Exercise("11.3", shortest_stretch, points_of_an_object, cases={
         name: lambda rng, columns=columns: (np.array(columns), 1280) for name, columns in {
             "one point": [300.0], "equal points": [5.0, 5.0, 5.0], "across the seam": [1270.0, 2.0, 1278.0, 18.0],
@@ -138,40 +101,13 @@ EXERCISES = [
             "more than half a turn": [300.0, 700.0, 1000.0, 1250.0],
             "most of them at one end": [300.0, 310.0, 320.0, 330.0, 700.0, 1100.0],
         }.items()
-    }, mistakes="""
-        around[0] + width)) => around[-1]))
-        One gap is missing. It goes from the last point across the seam to the first.
-        ... => return columns.min(), columns.max()
-        You take the least and the greatest column. Across the seam this is the long way round.
-        return start, start + => start -= width * (start + width - gaps[largest] >= width); return start, start +
-        Your u_min is negative across the seam. Move both by a turn, so that 0 <= u_min < width.
-        start + width - gaps[largest] => (start + width - gaps[largest]) % width
-        The remainder of u_max turns the stretch inside out. Across the seam u_max must pass the width.
-        ... => u = columns + width * ((np.ptp(columns) > width / 2) & (columns < width / 2)); return u.min(), u.max()
-        Points that span half the picture need not lie across the seam. Look for the largest gap, all around.
-        largest = gaps.argmax() => largest = gaps.argmax() if gaps.max() >= width / 2 else -1
-        The largest gap may be less than half a turn. It is still the one to leave out.
-        (largest + 1) % len(around) => largest
-        Your stretch begins where the largest gap begins. It must begin where this gap ends.
-        (largest + 1) % len(around) => largest and also gaps[largest] => (width - gaps[largest])
-        That is the empty part, the largest gap. The points are in all the rest.
-        return start, start + width => return start, width
-        The second number is the length of the stretch. The task asks for u_max, where it ends.
-    """),
+    }, example=(([1270, 2, 1278, 18], 1280), (1270, 1298))),
     Exercise("11.4", knock, knocked, "challenge", tolerance=0.05, cases={
         "no knock": lambda rng: knocked(rng, largest=0.0),
         "points behind": lambda rng: knocked(rng, np.pi + rng.uniform(-0.02, 0.02, 12)),
         "the first point twice": the_first_point_twice,
-    }, mistakes="""
-        (before, after) => (before[:2], after[:2])
-        You use the first points only. Which turn do they leave open? Stack them all.
-        (before, after) => (after, before)
-        Your signs are wrong. A camera that turns left sees everything move to the right.
-        ... => return 0.0, 0.0, np.mean(((after - before)[:, 0] / width * 360 + 180) % 360 - 180)
-        You compute yaw alone, as if the axis stood upright. Look how a tilt moves points ahead, and at the left.
-        ... => right, down = ((after - before).T / width * 360 + 180) % 360 - 180; return 0.0, down.mean(), right.mean()
-        Rows are not pitch. A pitch lowers what is ahead and lifts what is behind, and the mean hides both.
-        np.degrees(w) => np.degrees(np.cross(then, first).mean(axis=0))
-        A mean of cross products is too small, because no point shows a turn about itself. Solve the equations.
-    """),
+    }, example=(
+        ([[640, 320], [320, 400], [1270, 250]], [[642.85, 321.04], [322.41, 401.79], [1273.48, 248.87]], 1280, 640),
+        (0.5, -0.3, 0.8),
+    )),
 ]

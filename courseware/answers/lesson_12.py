@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 from courseware.lessons.kit.mistakes import edited
 
 WIDTHS = (640, 1280, 1920)
@@ -143,22 +143,7 @@ EXERCISES = [
     Exercise("12.1", counts_once, boxes_near_the_ends, "warm-up", cases={
         "half columns": lambda rng: (np.array([[90.0, 0, 110, 9], [91, 0, 110, 9], [92, 0, 110, 9]]), 1280, 100.25),
         "no boxes": lambda rng: (np.zeros((0, 4)), 1280, 160.0),
-    }, mistakes="""
-        (boxes[:, 0] + boxes[:, 2]) / 2 => boxes[:, 0] + boxes[:, 2] / 2
-        Numbers 2 and 3 of a box are u_max and v_max, not its width and height.
-        (boxes[:, 0] + boxes[:, 2]) / 2 => boxes[:, 0]
-        You use one edge alone, but the centre of the box decides.
-        < start + width => < width
-        Your range ends at W. This is less than one turn, so some objects count nowhere. It must end at start + W.
-        ... => return counts_once(boxes, width, width / 8)
-        You take the range from W/8, as in the lesson. Here it begins at `start`.
-        < start + width => <= start + width
-        In your result a centre on the right end counts, and so does its copy on the left end. It counts twice.
-        centre >= start => boxes[:, 0] >= start and also centre < => boxes[:, 2] <
-        You ask for the whole box inside. Then an object on either end of the range never counts.
-        & (centre < start + width) =>
-        Your range does not end within the extended image. It is W wide, without the added quarter.
-    """),
+    }),
     Exercise("12.2", overlap, two_boxes, cases={
         name: lambda rng, a=a, b=b: (np.array(a), np.array(b), 1280) for name, (a, b) in {
             "half a turn apart": ([100.0, 300, 200, 400], [740.0, 300, 840, 400]),
@@ -168,24 +153,7 @@ EXERCISES = [
             "side by side": ([100.0, 300, 200, 400], [200.0, 300, 300, 400]),
             "far apart": ([100.0, 300, 200, 400], [900.0, 450, 950, 500]),
         }.items()
-    }, mistakes="""
-        (-width, 0, width) => (0,)
-        Across the seam your result is 0. First you may have to move one of the boxes by a whole turn.
-        sum(max(0, => max(max(-np.inf,
-        Boxes that are apart side by side share nothing. So a length across is at least 0.
-        max(0, min(a[3] => max(-np.inf, min(a[3]
-        Boxes one above the other share nothing. So the length down is at least 0.
-        / (sum(areas) - shared) => / sum(areas)
-        The shared area is in both boxes, so you count it twice in the union. Subtract it once.
-        / (sum(areas) - shared) => / min(areas)
-        You divide by the area of the smaller box. Divide by the area of the union.
-        (-width, 0, width) => [width * (int(a[2] > width) - int(b[2] > width))]
-        You move a box only where it passes the seam itself. But the other one may end before it, so try all turns.
-        across = => a[::2] %= width; b[::2] %= width; across = and also (-width, 0, width) => (0,)
-        The remainder of u_max turns a box at the seam inside out. Its right edge is then left of the other.
-        (-width, 0, width) => (0, width)
-        b may have to go one turn to the left, one to the right, or stay where it is. Try all three.
-    """),
+    }, example=(([1200, 300, 1300, 400], [0, 300, 20, 400], 1280), 0.2)),
     Exercise("12.3", surest, answers_of_a_network, cases={
         "a chain of overlaps": lambda rng: squares([0, 4, 8], [0, 0, 0], [0.9, 0.8, 0.7], 0.1, 0.4),
         "one place and two classes": lambda rng: squares([0, 0], [0, 1], [0.6, 0.7], 0.1, 0.4),
@@ -196,52 +164,12 @@ EXERCISES = [
         "no boxes": lambda rng: (np.zeros((0, 4)), np.zeros((0, 3)), 0.5, 0.4),
         "two likely classes":
             lambda rng: (np.tile([0.0, 0, 10, 10], (2, 1)), np.array([[0.9, 0.1], [0.7, 0.6]]), 0.5, 0.4),
-    }, mistakes="""
-        & (classes[kept] == classes[i]) =>
-        A chair may stand before a sofa. So only boxes of the same class exclude each other.
-        [kept => [best > best[i]
-        You compare with every surer box, also with boxes that went. Only a box that stayed can exclude others.
-        np.array(kept, dtype=int) => np.sort(np.array(kept, dtype=int))
-        You have the right rows in a wrong order (as given, least score first, or by class). The surest comes first.
-        ... => good = scores.max(axis=1) >= threshold; return surest(boxes[good], scores[good], threshold, limit)
-        Your numbers count within the boxes that reach the threshold. Give their rows in the list as given.
-        (areas[i] + areas[kept] - shared) => np.minimum(areas[i], areas[kept])
-        Divide the shared area by the union, not by the smaller box. In the union it counts once only.
-        (shared > limit * (areas[i] + areas[kept] - shared)) & =>
-        You keep one box for each class. But there may be several chairs, and only boxes that overlap are one.
-        and not in_the_way.any() =>
-        You only sort, and suppress nothing. Of several boxes on one thing, only the surest stays.
-        best[i] >= threshold and =>
-        You use no threshold. Rows with a lower score never count.
-        np.clip(sides, 0, None).prod(axis=1) => sides.prod(axis=1)
-        Boxes apart in both directions have two negative sides, and their product is positive. Such boxes share nothing.
-        - boxes[:, :2]).prod => - boxes[:, :2] + 1).prod and also boxes[kept, :2]) => boxes[kept, :2]) + 1
-        A box from 0 to 10 is 10 pixels wide here. You count 11, but its ends are edges, not pixel numbers.
-    """),
+    }, example=(([[0, 0, 10, 10], [4, 0, 14, 10], [8, 0, 18, 10]], [[0.9, 0], [0.8, 0], [0.7, 0]], 0.5, 0.4), [0, 2])),
     Exercise("12.4", lowest_threshold, validation_boxes, "challenge", verify=refused, cases={
         "four right boxes": lambda rng: (FOUR_SCORES, np.ones(4, bool), 0.5),
         "too few boxes to be sure": lambda rng: (FOUR_SCORES, np.ones(4, bool), 0.6),
         "all boxes wrong": lambda rng: (np.linspace(0.1, 0.9, 50), np.zeros(50, bool), 0.5),
         "equal scores": lambda rng: (np.full(40, 0.5), np.arange(40) < 36, 0.8),
         "several crossings": lambda rng: (np.round(np.linspace(0.99, 0.2, 80), 2), np.arange(80) // 4 != 5, 0.8),
-    }, mistakes="""
-        if (share + z**2 / (2 * n) - root) / (1 + z**2 / n) => if share
-        You take the plain share. But 4 right boxes of 4 prove little, so the lower end must reach `least`.
-        if (share + z**2 / (2 * n) - root) / (1 + z**2 / n) => if share - z * np.sqrt(share * (1 - share) / n)
-        p - z sqrt(p (1-p) / n) has no width where all are right. Wilson uses the true share under the root.
-        - root => + root
-        That is the upper end of the interval. The lower end must reach `least`.
-        np.unique(scores) => np.unique(scores)[::-1]
-        That is the highest good threshold. The lowest one finds most objects.
-        ... => return lowest_threshold(scores + 1e-9 * np.arange(len(scores)), right, least)
-        Boxes with equal scores stay or go together, because no threshold can separate them.
-        np.unique(scores) => np.unique(scores)[:-1] and also scores >= t => scores > t
-        You keep boxes with more than t. A box with a score of just t is kept, too.
-        z = 1.96 => z = 1.645
-        z = 1.645 is for 90 %. The task has z = 1.96.
-        share + z**2 / (2 * n) - root => share - root
-        Something is missing above Wilson's fraction line, because the middle of the interval is not k / n itself.
-        kept.sum(), right[kept].mean() => len(scores), right[kept].sum() / len(scores)
-        You take the share of all boxes. Take the share of the kept boxes, whose score is at least t.
-    """),
+    }, example=(([0.6, 0.9, 0.7, 0.8], [True, True, True, True], 0.5), 0.6)),
 ]

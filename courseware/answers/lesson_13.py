@@ -3,7 +3,7 @@
 import numpy as np
 
 from course_lib.geometry import wrap_angle
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 
 
 def row_below(v, horizontal_range, baseline, height):
@@ -137,89 +137,22 @@ def misjudged(arguments: tuple, answer: object) -> str | None:
 
 # fmt: off
 EXERCISES = [
-    Exercise("13.1", row_below, rows, "warm-up", mistakes="""
-        + baseline / => + baseline / np.cos(e_u) /
-        You take the range along the slanted ray. But it is horizontal, from the rig's axis, and the same for both.
-        + baseline => - baseline
-        Your point moves down. A camera further down sees it higher, so e_l > e_u.
-        np.arctan(np.tan(e_u) + baseline / horizontal_range) => e_u + baseline / horizontal_range
-        np.arctan(np.tan(e_u) + baseline / horizontal_range) => e_u + np.arctan(baseline / horizontal_range)
-        Angles do not add here. Add baseline / range to the tangent of e_u, then take the arctan.
-        np.arctan(np.tan(e_u) + baseline / horizontal_range) => np.tan(e_u) + baseline / horizontal_range
-        You have the tangent of e_l. Turn it into an angle before you ask for its row.
-        (0.5 - e_l / np.pi) * height => e_l
-        You give an elevation, but the task asks for the row in pixels.
-        (0.5 - e_l / np.pi) * height => v - (0.5 - e_l / np.pi) * height
-        You say by how many rows a point moves. The task asks for the row itself.
-        np.tan(e_u) => np.tan(np.degrees(e_u))
-        np.tan takes radians, but you give it degrees.
-        0.5 - e_l => 0.5 + e_l
-        Your picture is upside down. Row 0 is straight up, so a row falls as the elevation grows.
-        * np.pi => * 2 * np.pi and also e_l / np.pi => e_l / (2 * np.pi)
-        All rows together span pi, from straight up to straight down. The 2 pi belong to the columns.
-    """),
+    Exercise("13.1", row_below, rows, "warm-up", example=(([320, 480], 2, 0.3, 640), [289.7, 463.5])),
     Exercise("13.2", miss, two_cameras, cases={
         "an upright rig": lambda rng: two_cameras(rng, np.array([0.0, 0.0, 1.0])),
         "cameras side by side": lambda rng: two_cameras(rng, np.array([0.0, 1.0, 0.0])),
         "pairs that obey exactly and directions near the poles": exact_pairs_and_poles,
-    }, mistakes="""
-        np.cross(baseline, ahead) => np.cross(baseline, x_upper)
-        The halves are right. But b x x_upper is shorter than 1, so make it a unit vector before the arcsine.
-        ... => return np.arcsin(np.abs(np.cross(x_upper, x_lower) @ baseline))
-        Equation (13.1) is 0 where it should be, but it is no angle. You need a unit normal, an arcsine, and one half.
-        ... => return np.maximum(miss(x_upper, x_lower, baseline), miss(x_lower, x_upper, baseline))
-        That is the larger of the two ways, as in (13.2). The task asks for the way from x_lower only.
-        np.where(np.sum(ahead * x_lower, axis=1) >= 0, to_plane, to_pole) => to_plane
-        You give the angle to the whole circle. The half behind is forbidden, so there the way ends at a pole.
-        to_plane, to_pole => to_plane, np.pi / 2
-        to_plane, to_pole => to_plane, np.arccos(x_lower @ baseline)
-        On the other half the nearest point is one of two poles, +b or -b. Give the angle to the nearer one.
-        np.arccos => np.arcsin
-        On the other half you give |e|. The way to the pole is the rest to a right angle.
-        np.sum(ahead * x_lower => np.sum(x_upper * x_lower
-        Which half is it? Compare with the part of x_upper at a right angle to b, not with x_upper itself.
-        np.arcsin(np.clip(np.abs(np.sum(normal * x_lower, axis=1)), 0, 1)) => np.abs(np.sum(normal * x_lower, axis=1))
-        On the right half you give the sine of the angle. The arcsine is missing.
-    """),
+    }, example=(
+        ([[1.0, 0, 0], [1.0, 0, 0], [1.0, 0, 0]], [[0.6, 0.8, 0], [0.8, 0, 0.6], [-0.6, 0.8, 0]], [0, 1, 0]),
+        [0, 0.644, 0.644],
+    )),
     Exercise("13.3", partners, tables, cases={
         "a tie that goes on from row to row": lambda rng: (np.array([[6, 6, 0], [0, 6, 2], [0, 0, 1]]),),
         "two objects that share nothing": lambda rng: (np.array([[5, 3], [2, 0]]),),
         "a table of zeros": lambda rng: (np.zeros((2, 3), int),), "one count": lambda rng: (np.array([[3]]),),
-    }, mistakes="""
-        np.nonzero(alone) => np.nonzero(largest & (largest.sum() == 1))
-        Equal counts in different rows and different columns are no tie, because nobody has to choose.
-        ... => return np.where(counts.max(axis=1) > 0, counts.argmax(axis=1), -1)
-        You give every row its best column. But a column can be taken only once.
-        largest = table == table.max() => largest = np.arange(table.size).reshape(table.shape) == table.argmax()
-        In a tie you take the one that comes first in the list. Any choice is a guess, so leave both out.
-        np.array(counts), np => np.array(counts) + 1, np
-        You pair objects that share no feature. Stop when the largest count left is 0.
-        & (largest.sum(axis=0) == 1) =>
-        You see ties in a row. Two rows with equally many matches for one column are a tie as well.
-        & (largest.sum(axis=1, keepdims=True) == 1) =>
-        You see ties in a column. Two columns with equally many matches for one row are a tie as well.
-        table[:, largest.any => table[:, alone.any
-        table[largest.any => table[alone.any
-        In your result rows or columns of a tie get another partner. All of them are out.
-        table[largest.any(axis=1)] = 0 =>
-        table[:, largest.any(axis=0)] = 0 =>
-        A row that has its partner is out, and so is its column. Strike out both.
-        np.full(len(counts), -1) => np.zeros(len(counts), int)
-        Rows without a partner must hold -1, not 0, because 0 is a column.
-    """),
+    }, example=(([[90, 12], [80, 0], [4, 6]],), [0, -1, 1])),
     Exercise("13.4", turn_of_the_lower, matches, "challenge", verify=misjudged, cases={
         "many matches": lambda rng: matches(rng, 40.0, MANY, noise=0.3, wrong=0.5),
         "a turn of nearly half a circle": lambda rng: matches(rng, turn=179.9),
-    }, mistakes="""
-        good = near[np.abs(near) < 1.5] => about, good = 0, gap
-        You take a plain mean of all. Wrong matches pull at it, and the seam does, too.
-        good = near[np.abs(near) < 1.5] => good = near
-        Your mean is on the circle, but wrong matches still pull at it. What do the right ones have in common?
-        about + good.mean() => np.median(gap) and also good = near[np.abs(near) < 1.5] => good = gap
-        A median survives wrong matches, but not the seam. And your spread counts all wrong matches.
-        return turn, good => return turn, gap
-        The turn is right. But the wrong matches make your error bar too large.
-        good.std(ddof=1) / np.sqrt(len(good)) => good.var(ddof=1) / len(good)
-        The turn is right. Your error bar is a variance, so take its root.
-    """),
+    }),
 ]

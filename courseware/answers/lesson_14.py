@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 
 
 def place(box_upper, box_lower, width, baseline):
@@ -110,94 +110,17 @@ EXERCISES = [
     Exercise("14.1", place, two_boxes, "warm-up", cases={
         "boxes across the seam": boxes_across_the_seam,
         "boxes near the left edge": lambda rng: two_boxes(rng, turn=0.04, wide=0.03),
-    }, mistakes="""
-        np.cos(e_u) * np.cos(a), np.cos(e_u) * np.sin(a), np.sin(e_u) => np.cos(a), np.sin(a), np.tan(e_u)
-        You go d along the floor. But d runs along the slanted ray, and along the floor it is d cos e_u.
-        baseline * np.cos(e_l) / np.sin(e_l - e_u) => baseline / (np.tan(e_l) - np.tan(e_u))
-        You go the horizontal range along a slanted direction. Multiply by d.
-        return d => e_u = e_l; return d
-        You measure d from the upper camera, so it goes with the upper direction.
-        u / width => (u + (box_lower[0] + box_lower[2]) / 2) / 2 / width
-        d belongs to the upper camera's ray, and so does the azimuth. Take neither the lower box's nor an average.
-        box[2:]) / 2 => box[2:] % [width, np.inf]) / 2
-        Across the seam u_max is greater than the width, and must stay so. With a remainder or a cut the middle jumps.
-        np.sin(e_l - e_u) => np.sin(e_u - e_l)
-        Your point lies behind the camera. The angle at the point is e_l - e_u. Or did you exchange the boxes?
-        baseline * np.cos(e_l) => baseline * np.cos(e_u)
-        The numerator of d has the cosine of the lower elevation. Look at the law of sines once more.
-        0.5 - u / width => u / width - 0.5
-        Left and right are swapped. Azimuth decreases to the right, a = (1/2 - u/W) 2 pi.
-        (box[:2] + box[2:]) / 2 => box[:2]
-        You took the boxes' corners (u_min, v_min). The centre is the mean of both corners.
-        2 * v / width => v / width and also 2 * v_lower / width => v_lower / width
-        You divide the row by the width. But a panorama is half as high as it is wide, H = W / 2.
-    """),
+    }, example=(([600, 380, 700, 460], [596, 350, 696, 430], 1280, 0.3), [1.7, -0.08, -0.91])),
     Exercise("14.2", range_sigma, lambda rng: (*triangles(rng), rng.uniform(0.002, 0.02)), cases={
         "exact baseline": lambda rng: (*triangles(rng), 0.0),
         "exact angles": lambda rng: (*triangles(rng)[:4], 0.0, 0.01),
-    }, mistakes="""
-        by_baseline = rho / baseline => by_baseline = (rho / baseline) ** 2
-        The range is proportional to the baseline. Differentiate B / slope by B, and put rho = B / slope in.
-        + by_baseline**2 =>
-        The baseline is not known exactly either. Its error is still missing.
-        np.sqrt(by_upper**2 + by_lower**2 + by_baseline**2) => by_upper + by_lower + by_baseline
-        Independent errors neither cancel nor simply add up. Take the root of the sum of their squares.
-        / np.cos(e_u) ** 2 => and also / np.cos(e_l) ** 2 =>
-        That holds for level rays. Each elevation counts with 1 / cos^2 of its own.
-        np.cos(e_u) ** 2 => np.cos(e_u) and also np.cos(e_l) ** 2 => np.cos(e_l)
-        Under the root you need the square of 1 / cos^2, which is 1 / cos^4.
-        by_upper**2 + by_lower**2 => by_upper**2
-        You use the noise of one camera alone. The other camera's noise belongs there, too.
-        rho**2 / baseline => rho / baseline
-        The angles' error grows with the square of the range.
-        rho**2 / baseline => rho**2 / baseline**2
-        The baseline counts once. Twice the baseline gives half the error.
-        np.sqrt(by_upper**2 + by_lower**2 + by_baseline**2) => np.sqrt(by_upper**2 + by_lower**2) + by_baseline
-        The baseline's error is independent of the others, too. So its part adds as a square, under the root.
-        rho / baseline * sigma_baseline => rho**2 / baseline * sigma_baseline
-        The baseline's part is too large by a factor of rho. Differentiate rho = B / s by B, with the slope s fixed.
-    """),
+    }, example=(([2, 4], [-0.4, -0.2], [-0.27, -0.13], 0.3, 0.005, 0.01), [0.126, 0.41])),
     Exercise("14.3", range_from_matches, matches, verify=refused_range, cases={
         "one match far off": lambda rng: matches(rng, 5, 1, parallax=(0.5, 0.6)),
         "a stranger comes first": a_stranger_comes_first,
         "all matches diverge": lambda rng: (np.array([0.1, 0.2]), np.array([0.0, 0.1]), 0.3),
-    }, mistakes="""
-        np.median => np.mean
-        np.median => np.mean and also if slope > 0 else np.nan =>
-        One match on something else spoils a mean, but hardly moves a median.
-        ... => return np.mean(baseline / (np.tan(e_l) - np.tan(e_u)))
-        A mean of ranges follows the slope that is nearest 0. Take a median, and take it of the slopes.
-        ... => return np.median(baseline * np.cos(e_l) / np.sin(e_l - e_u))
-        You have d, along the slanted ray. The task asks for the horizontal range, so use the difference of tangents.
-        np.tan(e_l) - np.tan(e_u) => e_l - e_u
-        B / rho is the difference of the two tangents, not of the angles, and not the tangent of their difference.
-        np.median(np.tan(e_l) - np.tan(e_u)) => np.tan(np.median(e_l)) - np.tan(np.median(e_u))
-        Subtract match by match first, because the two medians may belong to different features.
-        slope > 0 => (e_l > e_u).all()
-        Your result is NaN as soon as one match diverges. But one may be a stranger. Give NaN only if all diverge.
-        if slope > 0 else np.nan =>
-        This is right while there is a range. But where the matches diverge, your range is negative. It must be NaN.
-        baseline / slope => slope / baseline
-        The range is B / slope. A slope alone has no metres, and a larger slope means nearer.
-    """),
+    }),
     Exercise("14.4", mean_error, triangles, "challenge", tolerance=5e-5, cases={  # a numerical derivative is right, too
         "rays as far above the horizon as below": rays_as_far_above_the_horizon_as_below,
-    }, mistakes="""
-        bent_range + bent_slope => bent_range / 2 + bent_slope
-        return sigma**2 => return 2 * sigma**2
-        return sigma**2 => return sigma**2 / 2
-        Something is off by a factor of two. Is it the half of Taylor's series, or the 2 of d2(1/s)/ds2 = 2 / s^3?
-        ... => return 0 * rho
-        Zero is the first order. The second order does not cancel, because B / slope is a curve.
-        + bent_slope =>
-        The slope is a curve over e, too, because tan e is one. Its second derivative gives a second part.
-        bent_range + =>
-        You differentiated the tangents twice. But B / slope itself is a curve, and this part is missing.
-        bent_range + bent_slope => bent_range - bent_slope
-        The sign of the tangents' part is wrong, because the upper elevation has a minus in the slope.
-        ... => return 2 * sigma**2 * rho**3 / baseline**2
-        That holds for level rays. Each elevation counts with 1 / cos of its own.
-        ... => return range_sigma(rho, e_u, e_l, baseline, sigma, 0)
-        That is the standard deviation. The task asks for the mean of the error, which is much smaller.
-    """),
+    }),
 ]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from course_lib.spherical_stereo.pose.rigid_fit import RigidFitError, fit_rigid_2d, rotation_2d
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 
 
 def noisy_points(rng: np.random.Generator, fewest: int = 2) -> tuple:
@@ -157,115 +157,23 @@ def needles(rng: np.random.Generator) -> tuple:
 EXERCISES = [
     Exercise("16.1", place_from_heading, lambda rng: (*noisy_points(rng), rng.uniform(-3, 3)), "warm-up", cases={
         "one point": lambda rng: (rng.uniform(-4, 4, (1, 2)), rng.uniform(0, 6, (1, 2)), rng.uniform(-3, 3)),
-    }, mistakes="""
-        R @ source => R.T @ source
-        You turn by -theta. Check the signs in R, or on which side R stands.
-        R @ source.mean => source.mean
-        The centroid of the source is in the body frame. Turn it before you subtract it.
-        target.mean(axis=0) - R @ source.mean(axis=0) => R @ (target.mean(axis=0) - source.mean(axis=0))
-        The task asks for the place in the world. So turn the source, not the target or the difference.
-        target.mean(axis=0) - R @ source.mean(axis=0) => target[0] - R @ source[0]
-        You use the first pair only. The least squares are those of all pairs: take the centroids.
-        mean(axis=0) => sum(axis=0)
-        You add up what the pairs say. The centroids are means: divide by their number.
-        np.cos(theta), -np.sin(theta) => np.cos(theta), np.sin(theta)
-        One sign in R makes it no rotation: its determinant must be 1.
-        mean(axis=0) - R => mean() - R
-        A centroid has two coordinates. Take the mean over the points, not over all numbers.
-    """),
+    }),
     Exercise("16.2", fitted_scale, scaled_points, cases={
         "mirrored points": lambda rng: scaled_points(rng, (1, -1), 4),
         "points on a line": lambda rng: scaled_points(rng, (1, 0)),
-    }, mistakes="""
-        ... => return 1 / fitted_scale(target, source)
-        You fit the target to the source and turn that around. With noise it is another number.
-        np.hypot(dot, cross) / np.sum(a**2) => np.mean(np.linalg.norm(b, axis=1) / np.linalg.norm(a, axis=1))
-        np.hypot(dot, cross) / np.sum(a**2) => np.sqrt(np.sum(b**2) / np.sum(a**2))
-        A ratio of lengths or spreads counts noise as size. Use the sums C and S of dot and cross products.
-        np.hypot(dot, cross) => np.linalg.svd(b.T @ a, compute_uv=False).sum()
-        A sum of singular values lets a mirror fit. With a negative determinant the last one counts minus.
-        ... => return 1 / fitted_scale(source, target)
-        That is the inverse: the scale multiplies the source.
-        np.sum(a**2) => np.sum(b**2)
-        You divide by the spread of the target. The scale belongs to the source.
-        np.hypot(dot, cross) => dot
-        Dot products alone are right for a heading of 0 only. What is the largest that a rotation makes them?
-        np.hypot(dot, cross) => (dot + cross)
-        Sums of dot and cross products add as the sides of a right triangle: root of the sum of squares.
-        a, b = source - source.mean(axis=0), target - target.mean(axis=0) => a, b = source, target
-        Subtract each side's centroid first.
-    """),
+    }, example=(([[0, 0], [2, 0]], [[1, 1], [1, 4]]), 1.5)),
     Exercise("16.3", odd_pair, points_with_an_odd_pair, cases={
         "blurred points": lambda rng: points_with_an_odd_pair(rng, 0.7, other_measures_differ),
         "points that fit badly": lambda rng: points_with_an_odd_pair(rng, 0.7, the_one_left_out_decides),
-    }, mistakes="""
-        apply(s) - m) => apply(source[k : k + 1]) - target[k]) and also argmin => argmax
-        You take the pair that is farthest off the fit of the others. How well do these others fit?
-        ... => return best_by(source, target, np.sum)
-        ... => return best_by(source, target, np.max)
-        The task asks for the sum of the squares of all that is left: not of the lengths, and not the largest.
-        ... => return int(np.argmax(np.sum((fit_rigid_2d(source, target).apply(source) - target) ** 2, axis=1)))
-        The largest residual of the fit to all pairs can be another's, because the odd one drags the fit to itself.
-        argmin => argmax
-        Yours is the pair that fits best: without it the fit is worst. Which one's absence makes it best?
-        ... => return int(np.argmax(np.sum((source - target) ** 2, axis=1)))
-        Source and target are in different frames. Fit before you compare.
-        ... => return int(np.argmax(np.linalg.norm(source - source.mean(axis=0), axis=1)))
-        That is the pair farthest out, which may be right. Only source and target together tell.
-        ... => return best_by(source, target, lambda off: off @ off, of_all=True)
-        You fit the rest, but sum over all pairs. The residual of the one left out does not belong in the sum.
-        int(np.argmin(left_over)) => min(left_over)
-        That is the least sum itself. The task asks which pair was left out: np.argmin.
-    """),
+    }),
     Exercise("16.4", fit_weighted, weighted_points, tolerance=1e-4, cases={
         "a pair of weight 0": a_pair_of_weight_0, "nearly half a turn": nearly_half_a_turn,
         "equal weights": lambda rng: (*(points := noisy_points(rng, 3)), np.full(len(points[0]), 3.0)),
         "a wall that looks mirrored": a_wall_that_looks_mirrored,
-    }, functions={by_svd_without_sign: "U V^T may be a mirror: the sign of the determinant is missing."}, mistakes="""
-        m_G - R @ s_G => target.mean(axis=0) - R @ source.mean(axis=0)
-        The heading is right. The place needs the *weighted* centroids as well: t = m_G - R s_G.
-        / weights.sum() => / len(weights)
-        A weighted centroid is the weighted sum divided by the sum of the *weights*, not by n.
-        ... => return fit_weighted(source, target, np.ones(len(source)))
-        Your fit counts every pair alike. A pair of a larger weight must count more.
-        ... => return fit_weighted(source, target, 1 / np.maximum(weights, 1e-9))
-        You divide by the weights. A large weight means that the pair counts more.
-        weights @ points / weights.sum() => points.mean(axis=0)
-        The centroids are weighted, too: a pair of weight 0 must not move them.
-        theta = np.arctan2(weights @ => w = np.ones(len(a)); theta = np.arctan2(w @ and also , weights @ => , w @
-        The centroids are weighted, but the dot and cross products are not.
-        ... => return fit_weighted(source, target, weights**2)
-        Each weight stands once, as it is, in front of a square: not w squared, its root, or on the points.
-        m_G - R @ s_G => m_G - s_G
-        The heading is right. The place is the target's centroid minus the source's, turned by theta.
-        return x, y, theta => return x, y, theta % (2 * np.pi)
-        The pose is right, but give theta from -pi to pi, as np.arctan2 does.
-        weights @ (a[:, 0] => weights**2 @ (a[:, 0] and also weights @ np.sum => weights**2 @ np.sum
-        Each pair's weight enters the sums squared: you multiply both sides by it. It belongs to the product once.
-    """),
+    }, functions={by_svd_without_sign: "U V^T may be a mirror: the sign of the determinant is missing."},
+             example=(([[1, 0], [3, 0], [0, 2]], [[2, 2], [2, 4], [0, 0]], [1, 1, 0]), (2, 1, 1.571))),
     Exercise("16.5", pose_sigmas, needles, "challenge", cases={
         "round errors": lambda rng: (rng.uniform(-2, 6, (5, 2)), rng.uniform(-3, 3), np.tile(np.eye(2), (5, 1, 1))),
         "two points": lambda rng: (rng.uniform(-2, 2, 2) + 3 * np.eye(2), 0.0, np.tile(0.04 * np.eye(2), (2, 1, 1))),
-    }, mistakes="""
-        covariances, row) => np.array([np.diag(np.diag(c)) for c in covariances]), row)
-        You use the variances alone. But a needle's x and y err together: take the whole matrix.
-        covariances, row) => np.array([np.trace(c) / 2 * np.eye(2) for c in covariances]), row)
-        You make each needle round. Its direction decides how much it turns the fit.
-        a[:, 1], -a[:, 0]] => a[:, 0], a[:, 1]]
-        Your heading takes the errors *along* the line to the centroid. Only those across it turn the fit.
-        np.cos(theta) * x - np.sin(theta) * y, np.sin(theta) * x + np.cos(theta) * y => x, y
-        Your x and y are along the body's axes. The pose is in the world: turn by theta.
-        x - np.sin(theta) * y => x + np.sin(theta) * y and also np.sin(theta) * x => -np.sin(theta) * x
-        You turn by -theta from the body to the world: check the signs in R.
-        rows = => covariances = rotation_2d(theta) @ covariances @ rotation_2d(theta).T; rows =
-        You turn the covariances to the world, but the points are in the body frame. Turn the result, once.
-        + s_y * turn => and also - s_x * turn =>
-        Only the centroid's error is in your place. A wrong heading swings the camera around it: the lever.
-        + s_y * turn => - s_y * turn and also - s_x * turn => + s_x * turn
-        The lever has the wrong sign: when the fit turns left, the camera moves to the other side.
-        a = source - [s_x, s_y] => a = source
-        The turn is about the centroid. Take the points' places from there, not from the camera.
-        np.sqrt(np.einsum("ni,nij,nj->", row, covariances, row)) => np.einsum("ni,nij,nj->", row, covariances, row)
-        These are variances. The task asks for standard deviations.
-    """),
+    }),
 ]

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.stats import beta  # noqa: F401, a mistake uses it
 
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 
 
 def camera_on_map(x, y, theta, forward, left, turned):
@@ -69,78 +69,10 @@ def on_a_lever(rng: np.random.Generator) -> tuple:
 
 # fmt: off
 EXERCISES = [
-    Exercise("19.1", camera_on_map, mounted, "warm-up", mistakes="""
-        x + c * forward - s * left, y + s * forward + c * left => x + forward, y + left
-        Forward and left are the robot's directions. Turn them by theta before you add them to x and y.
-        np.cos(theta), np.sin(theta) => np.cos(theta + turned), np.sin(theta + turned)
-        The camera sits forward of the *robot*. Its place turns with theta alone, not with its own turn.
-        np.sin(theta) => np.sin(-theta)
-        You turn the offset the wrong way round. Check with theta = 90 degrees, forward 1 m.
-        (theta + turned + np.pi) => (theta + np.pi)
-        (theta + turned + np.pi) => (turned + np.pi)
-        The place is right. The camera's heading is the sum of theta and its own turn, and yours lacks one of them.
-        (theta + turned + np.pi) => (theta - turned + np.pi)
-        The place is right. The camera's own turn is counter-clockwise, like theta, so add it.
-        (theta + turned + np.pi) % (2 * np.pi) - np.pi => (theta + turned) % (2 * np.pi)
-        (theta + turned + np.pi) % (2 * np.pi) - np.pi => theta + turned
-        The place is right. Bring the heading back to the range from -pi to pi (`wrap_angle`).
-        ... => return camera_on_map(x, y, theta, -forward, -left, turned)
-        You subtract the offset, which leads from the camera to the robot. Here it goes the other way.
-        (theta + turned + np.pi) % (2 * np.pi) - np.pi => theta + turned - 2 * np.pi * (theta + turned > np.pi)
-        Your heading stays below -pi in some cases. The sum of two angles can leave the range at either end.
-    """),
+    Exercise("19.1", camera_on_map, mounted, "warm-up"),
     Exercise("19.2", start_knowledge, tolerance=1e-9, inputs=lambda rng: (
         semantic_covariance(rng), float(rng.uniform(0.003, 0.03)), float(rng.uniform(0.2, 2.0)),
-    ), mistakes="""
-        sigma_z**2, tilt**2, tilt**2 => sigma_z**2, tilt, tilt
-        A covariance holds squares, so sigma_z and sigma_tilt go in squared.
-        sigma_z**2, tilt**2, tilt**2, 0.0 => 0.0, sigma_z**2, tilt**2, tilt**2 and also [0, 1, 5] => [0, 1, 2]
-        sigma_z**2, tilt**2, tilt**2, 0.0 => sigma_z**2, 0.0, tilt**2, tilt**2 and also [0, 1, 5] => [0, 1, 3]
-        Theta is the yaw, and yaw is the last of the six. At which places of the state are x, y and yaw?
-        = covariance => = np.diag(np.diag(covariance))
-        Place and heading are correlated, so copy the numbers beside the diagonal, too.
-        tilt**2, tilt**2 => 0.0, 0.0
-        tilt**2, tilt**2 => tilt**2, 0.0
-        sigma_z**2 => 0.0
-        Height, roll and pitch are not known exactly: the robot stands to sigma_z, and level to sigma_tilt in both.
-        return result => result[5, :2] = result[:2, 5] = 0.0; return result
-        return result => result[5, :2] = 0.0; return result
-        x and y are correlated with yaw, on both sides of the diagonal. Some of these four numbers are missing.
-    """),
-    Exercise("19.3", places_needed, wanted, tolerance=1e-9, mistakes="""
-        (p + z**2 / (2 * n) - half) / (1 + z**2 / n) => beta.ppf(0.025, n - misses, misses + 1)
-        That is the exact (Clopper-Pearson) interval, which is wider. The task asks for Wilson's.
-        (p + z**2 / (2 * n) - half) / (1 + z**2 / n) => p
-        You compare the share itself. It is the *lower end* of the interval that must reach the wanted share.
-        (p + z**2 / (2 * n) - half) / (1 + z**2 / n) => p - z * np.sqrt(p * (1 - p) / n)
-        p - 1.96 sqrt(p (1 - p) / n) says that one place without a miss proves everything. Take Wilson's.
-        - half => + half
-        That is the upper end, which says what is not excluded. The lower end says what is shown.
-        return n => return n - misses
-        You count the places that went well. The task asks for all places, with the misses.
-        / (1 + z**2 / n) >= => >=
-        Wilson's lower end is divided by 1 + z^2 / n. This is missing.
-        1.96 => 1.645
-        1.96 => 2.0
-        z = 1 is the 68 % interval, 1.645 the 90 % one, 2.576 the 99 % one, and 2 is rounded. Take 1.96.
-    """),
-    Exercise("19.4", carried, on_a_lever, "challenge", mistakes="""
-        ... => return covariance.copy()
-        Yours is the robot's own covariance. A heading that is off by a degree moves a camera 1 m ahead by 17 mm.
-        lever @ covariance @ lever.T => lever.T @ covariance @ lever
-        The order is J P J', with the derivative first. Yours has it transposed.
-        lever @ covariance @ lever.T => covariance + covariance[2, 2] * (lever - np.eye(3)) @ (lever - np.eye(3)).T
-        return lever @ covariance @ lever.T => return np.diag(np.diag(lever @ covariance @ lever.T))
-        Place and heading are correlated, so J P J' has terms beside the diagonal. You left them out.
-        lever[:2, 2] = -s * forward - c * left, c * forward - s * left => lever[:2, :2] = [[c, -s], [s, c]]
-        You turn the covariance, but it is on the map's axes already. Only the lever arm acts.
-        -s * forward - c * left, c * forward - s * left => forward, left
-        ... => return carried(covariance, 0.0, forward, left)
-        The lever says how the camera's place changes with theta, so it contains cos theta and sin theta.
-        -s * forward - c * left, c * forward - s * left => s * forward + c * left, s * left - c * forward
-        Your lever acts the wrong way. d(cos theta) is -sin theta, and d(sin theta) is +cos theta.
-        lever @ covariance @ lever.T => lever @ covariance
-        lever @ covariance @ lever.T => covariance @ lever.T
-        A covariance is carried from both sides. J P or P J' is only half of it.
-    """),
+    )),
+    Exercise("19.3", places_needed, wanted, tolerance=1e-9, example=((0.95, 0), 73)),
+    Exercise("19.4", carried, on_a_lever, "challenge"),
 ]

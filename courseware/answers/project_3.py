@@ -8,7 +8,7 @@ from scipy.optimize import least_squares, linear_sum_assignment
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo.pose.rigid_fit import fit_rigid_2d
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d as rotation
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 from courseware.lessons.kit.values import as_numbers
 
 
@@ -166,75 +166,15 @@ def scored_poses(rng: np.random.Generator, height: float = 0.0) -> tuple:
 # fmt: off
 EXERCISES = [
     Exercise("P3.1", squared_distances, lambda rng: scene(rng, *rng.integers((2, 1), (6, 5))), "warm-up",
-             cases={"nothing seen": lambda rng: scene(rng, 0, 4)}, mistakes="""
-        R @ covariances @ R.T => covariances
-        R @ covariances @ R.T => R.T @ covariances @ R
-        The covariances are in the body frame, the residuals on the map: turn them, R C R^T.
-        + pose[:2] =>
-        places @ R.T => places
-        Turn the places by the pose's heading, and move them to where the rig stands.
-        + 0.02**2 * np.eye(2) =>
-        The map's own 2 cm are missing: S = R C R^T + 0.02^2 I.
-        np.linalg.inv(S) => S
-        You multiply by S. What is unsure must count less: use its inverse.
-        np.linalg.inv(S) => np.linalg.inv(S * np.eye(2))
-        You use the diagonal of S alone. An error along the ray is in x and in y at once.
-        ... => return squared_distances(pose, places, covariances, landmarks) / 2
-        d^2 is r S^-1 r, without the half, which belongs to stage 3.
-        np.linalg.inv(S) => np.tile(np.eye(2), (len(S), 1, 1))
-        Yours is the squared distance in metres. Weigh it with the inverse of S.
-    """),
+             cases={"nothing seen": lambda rng: scene(rng, 0, 4)}),
     Exercise("P3.2", hypotheses, look_alikes, verify=verify_hypotheses, cases={
         "one seen": lambda rng: (rng.uniform(-3, 3, (1, 2)), np.array(["sofa"]), *look_alikes(rng)[2:]),
-    }, mistakes="""
-        or j == m: => or m <= j:
-        Two observations lie on two landmarks in two ways: first on first, and first on second.
-        np.asarray(labels)[:, None] == np.asarray(map_labels) => np.ones((len(places), len(landmarks)))
-        You lay sofas on chairs: the labels must agree, both times.
-        abs(lengths[0] - lengths[1]) > tolerance or min => min
-        Lengths that disagree by more than the tolerance cannot both be right: leave them out.
-        abs(lengths[0] - lengths[1]) => lengths[0] - lengths[1]
-        A length may be too long *or too short*: take the absolute difference.
-        or min(lengths) < 0.5 =>
-        Two things closer together than 0.5 m tell no reliable heading: leave such pairs out.
-        (landmarks[j] + landmarks[m]) / 2 => landmarks[j] and also (places[i] + places[k]) / 2 => places[i]
-        You lay the first on the first; then the second takes the whole error. Lay middle on middle.
-        seen, true = => true, seen =
-        theta is the angle from the observed line to the line on the map, not the way back.
-    """),
+    }),
     Exercise("P3.3", assign, rivals_for_landmarks, cases={
         "all too far": lambda rng: (rng.uniform(20, 60, (3, 5)), np.ones((3, 5), dtype=bool), 5.0),
-    }, mistakes="""
-        2, 0.0) => 2, -1e6) and also np.maximum(gain, 0) => gain
-        You match everything first and drop the bad pairs afterwards: a pair that is dropped spoilt others.
-        linear_sum_assignment(np.maximum(gain, 0), maximize=True) => one_by_one(gain, True)
-        You choose the best pair again and again, as the paper. The greatest *total* may begin with a lesser pair.
-        linear_sum_assignment(np.maximum(gain, 0), maximize=True) => one_by_one(gain, False)
-        Yours depends on the order of the observations: the first takes what a later one needs more.
-        linear_sum_assignment(np.maximum(gain, 0), maximize=True) => np.arange(len(gain)), gain.argmax(axis=1)
-        Two observations may take one landmark in yours: it must be one-to-one.
-        np.where(like, reward - squared / 2, 0.0) => reward - squared / 2
-        You match unlike classes.
-        squared / 2 => squared
-        A squared distance costs half of itself: the exponent of the normal distribution is -d^2 / 2.
-        float(gain => -float(gain
-        float(gain => float(squared
-        float(gain[rows[good], columns[good]].sum()) => float(good.sum())
-        The score is the sum of the gains, reward - d^2 / 2 for each match: no count, and no distance.
-        np.full(len(squared), -1) => np.zeros(len(squared), int)
-        An observation without a landmark gets -1, not 0: landmark 0 is one.
-    """),
+    }, example=(([[1, 2], [1, 9]], [[True, True], [True, True]], 5), ([1, 0], 8.5))),
     Exercise("P3.4", refit, matched_places, "challenge", verify=verify_refit, tolerance=1e-4,
-             cases={"heading at the wrap": lambda rng: matched_places(rng, np.pi - 0.01)}, mistakes="""
-        np.linalg.inv(covariances) => np.tile(np.eye(2), (len(places), 1, 1))
-        All pairs count alike in yours, as in the paper's fit. The covariances are not used.
-        inv(covariances) => inv(np.trace(covariances, axis1=1, axis2=2)[:, None, None] * np.eye(2))
-        One weight for each pair is not enough: a place is sure across its ray and unsure along it.
-        places - (targets - pose[:2]) @ rotation(pose[2]) => places @ rotation(pose[2]).T + pose[:2] - targets
-        The covariances are in the body frame: turn them onto the map, or the residuals back.
-        np.linalg.inv(covariances) => covariances
-        You weigh with the covariances. What is unsure must count less: use their inverses.
-    """, functions={
+             cases={"heading at the wrap": lambda rng: matched_places(rng, np.pi - 0.01)}, functions={
         lambda start, places, covariances, targets: fit_rigid_2d(places, targets, covariances=covariances):
         "You hold the weights fixed in each step. They turn with the pose: the weighted sum can be less.",
     }),
@@ -245,24 +185,5 @@ EXERCISES = [
         "one answer": lambda rng: (np.array([[2.0, 2.0, 3.12], [2.1, 2.0, -3.13]]), np.array([9.0, 8.5]), 6.0),
         "same place or same heading": lambda rng: (
             np.array([[0, 0, 0], [2, 0, 0], [0, 0, 2], [2, 1, 1]]) + rng.uniform(0, 1, 3), np.arange(10.0, 6, -1), 4.0),
-    }, mistakes="""
-        far | turned => np.arange(len(poses)) != best
-        A pose within 0.5 m and 10 degrees of the best is the same answer, and no rival of it.
-        far | turned => far
-        The same place the other way round is another answer: look at the heading, too.
-        far | turned => far & turned
-        Another answer is more than 0.5 m away *or* turned by more than 10 degrees; yours asks for both.
-        wrap_angle(poses[:, 2] - poses[best, 2]) => poses[:, 2] - poses[best, 2]
-        Headings of 3.12 and -3.13 differ by 0.03: wrap them.
-        / 2 =>
-        The scores count half: e to the power of half their difference.
-        + np.exp((nothing - scores[best]) / 2) =>
-        `nothing` is a rival, too: a pose ahead of all others may still explain too little.
-        np.exp((second - scores[best]) / 2) + =>
-        The runner-up is missing.
-        np.exp((second - scores[best]) / 2) => np.exp((scores[far | turned] - scores[best]) / 2).sum()
-        You add up all rivals; among them are copies of one answer. Only the best of them counts.
-        - scores[best]) / 2) => ) / 2) / np.exp(scores[best] / 2)
-        exp(3000) is infinite, and inf / inf is NaN. Only differences to the best score need an exponential.
-    """),
+    }),
 ]

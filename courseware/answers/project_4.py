@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from courseware.lessons.kit.exercises import Exercise
+from courseware.lessons.kit.exercise import Exercise
 
 
 def squares(shape, middle=0.5):
@@ -156,129 +156,25 @@ EXERCISES = [
         "the code is 0": lambda rng: raw_frames(rng, (0,)),
         "the code is 65535": lambda rng: raw_frames(rng, (65_535,)),
         "the code is another": lambda rng: raw_frames(rng, (1, 32_001, 65_000)),
-    }, mistakes="""
-        ... => return 0
-        ... => return int(raw.max())
-        0 and 65535 are the codes of many cameras, and the least or greatest number of some. Look at what repeats.
-        ... => return int((raw == invalid_code(raw)).sum())
-        That is how often the code occurs. Which number is it?
-        ... => return float(np.median(raw))
-        The median is an ordinary measurement. Count how often each occurs.
-        numbers[np.argmax(counts)] => np.argmax(counts)
-        That is its place in a list of numbers, not the number itself.
-        ... => return int(raw.flat[0])
-        The first pixel may have been measured. Look at all of them: what repeats?
-    """),
+    }, example=(([[[0, 2012, 0], [1987, 0, 2043]]],), 0)),
     Exercise("P4.2", unit_and_offset, on_a_line, cases={
         "no offset": lambda rng: (np.array([1000.0, 2000.0, 4000.0, 8000.0]), np.array([1.0, 2.0, 4.0, 8.0])),
-    }, mistakes="""
-        return slope => return 1 / slope
-        Yours is metres a number. The task asks for numbers a metre.
-        intercept / slope => intercept
-        Your offset is in raw numbers. How many metres is that?
-        ... => return np.sum(numbers * distances) / np.sum(distances**2), 0.0
-        ... => return np.mean(numbers / distances), 0.0
-        You force the line through zero. The camera has an offset, and near the camera it weighs most. Fit a line.
-        ... => return tuple(np.polyfit(numbers, distances, 1))
-        You fit the distance over the numbers. The task asks for numbers a metre, so the other way round.
-        slope, intercept / slope => intercept / slope, slope
-        The two are exchanged: first the unit, then the offset.
-    """),
+    }, example=(([1050, 2050, 4050], [1, 2, 4]), (1000, 0.05))),
     Exercise("P4.3", focal_length, a_wall, cases={
         "a pixel on the axis": lambda rng: (2.0 * np.sqrt(1 + squares((7, 9)) / 20.0**2), 2.0),
         "corners not measured": lambda rng: a_wall(rng, np.nan),
-    }, mistakes="""
-        squares(ranges.shape) => squares(ranges.shape, 0.0)
-        ... => return np.sqrt(np.nanmedian(squares(ranges.shape, 0.0) / ((ranges / distance) ** 2 - 1)))
-        Half a pixel off: pixel centres are at whole numbers, so the middle is at (width - 1) / 2.
-        (ranges / distance) ** 2 - 1 => ranges / distance - 1
-        ... => return np.sqrt(np.nanmedian(squares(ranges.shape) / (ranges / distance - 1)))
-        Pythagoras: it is the *square* of range / distance that is 1 + (pixels / f)^2.
-        used = np.isfinite(y) => used = np.ones(y.shape, bool)
-        ... => return np.sqrt(np.median(squares(ranges.shape) / ((ranges / distance) ** 2 - 1)))
-        Pixels without measurement (NaN), or the one on the axis (0/0), spoil it. Leave them out.
-        ** 2 - 1 => ** 2
-        ... => return np.sqrt(np.nanmedian(squares(ranges.shape) / (ranges / distance) ** 2))
-        The 1 is missing: (range / distance)^2 = 1 + (pixels / f)^2.
-        (ranges / distance) ** 2 - 1 => ranges**2 - distance**2
-        Yours changes with the wall's distance: divide the range by it first.
-        ... => return np.sqrt(squares(ranges.shape)[0, 0] / ((ranges[0, 0] / distance) ** 2 - 1))
-        That corner need not have been measured. Use all pixels that were measured.
-    """),
-    Exercise("P4.4", bias_coefficients, readings, cases={"the SR4000": lambda rng: readings(rng, 9.993)}, mistakes="""
-        4 * measured => 4 * true
-        Your phase is of the true range. Later only the *measured* one is known: fit over that.
-        4 * measured => measured
-        Your wave goes round once within c / 2f. This error goes round four times.
-        2 * np.pi * 4 => 4
-        The phase is in turns: np.sin takes radians.
-        ... => return np.append(bias_coefficients(measured, true, repeat)[0], [0.0, 0.0])
-        You have the constant alone: where is the wave?
-        np.ones_like(p), => 0 * p, and also return => return np.eye(3)[0] * np.mean(measured - true) +
-        You take the mean away first. Constant and wave are not independent: fit all three at once.
-        np.ones_like(p), np.sin(p), np.cos(p) => np.sin(p), np.cos(p), np.ones_like(p)
-        The constant comes first: (a, b, c).
-    """),
+    }),
+    Exercise("P4.4", bias_coefficients, readings, cases={"the SR4000": lambda rng: readings(rng, 9.993)}),
     Exercise("P4.5", flying_pixels, two_surfaces, cases={
         # Neighbours differ by decimetres, and none of them flies.
         "a steep floor": lambda rng: (1.2 * 20 / (np.arange(12)[:, None] * np.ones((1, 9)) + 3.0), 0.05),
         "nothing measured": lambda rng: (np.full((6, 7), np.nan), 0.05),
-    }, mistakes="""
-        np.pad(1 / depth, => np.pad(depth, and also two - 1 / depth) * depth**2 => two - depth)
-        You extrapolate Z itself. On a slanted plane Z is no line over the pixels; which function of Z is?
-        np.abs(2 * one - two - 1 / depth) * depth**2 <= tolerance => np.abs(1 / one - depth) > tolerance and also ~ =>
-        You mark every jump: a slanted floor jumps from row to row, and an edge has two honest sides.
-        * depth**2 =>
-        You compare a difference of 1/Z with metres. An error dq of 1/Z is one of Z^2 dq of Z.
-        np.zeros(depth.shape, dtype=bool) => np.ones(depth.shape, dtype=bool) and also |= => &=
-        Yours wants support from *all* sides. At an edge the honest pixels have it from one.
-        , (1, 0), (-1, 0) =>
-        You look left and right alone. A thin upright pole is supported from above and below.
-        np.isfinite(depth) & ~support => ~support
-        A pixel that was not measured does not fly: mark measured pixels alone.
-        & ~support => & support
-        ... => return ~flying_pixels(depth, tolerance)
-        The mask is the wrong way round: True is for pixels that fly.
-        2, constant_values=np.nan => 2, mode="wrap"
-        The other end of the image comes in, as with np.roll: beyond the edge there is no support.
-    """),
+    }),
     Exercise("P4.6", noise_by_distance, at_rest, cases={
         "nothing at all": lambda rng: (np.full((3, 4, 5), np.nan), np.array([1.0, 2.0, 3.0])),
         "means on the edges": means_on_the_edges,
-    }, mistakes="""
-        np.sqrt(variance[inside].mean()) => mean[inside].std()
-        That is how the scene varies from pixel to pixel. Noise is what varies from frame to frame.
-        np.sqrt(variance[inside].mean()) => np.sqrt(variance[inside]).mean()
-        You average standard deviations, which is too little: average variances, then take the root.
-        .all(axis=0) => .any(axis=0) and also frames[:, whole] => np.ma.masked_invalid(frames[:, whole])
-        Pixels that were measured only now and then take part. Use those that were measured in all frames.
-        np.full(len(edges) - 1, np.nan) => np.zeros(len(edges) - 1)
-        An empty bin has no noise that anyone measured: NaN, not 0.
-        np.sqrt(variance[inside].mean()) => frames[:, whole][:, inside].std(ddof=1)
-        You throw all pixels of a bin together: then the scene itself counts as noise.
-        np.sqrt(variance[inside].mean()) => np.diff(frames[:, whole][:, inside], axis=0).std()
-        A difference of two frames has the noise of both: root 2 too much.
-    """),
+    }),
     Exercise("P4.7", depth_from_raw, one_frame, "challenge", cases={
         "no pixel measured": lambda rng: one_frame(rng, 1.0),
-    }, mistakes="""
-        return (measured - error - pattern) / => return -error - pattern + measured /
-        return (measured - error - pattern) / => return -pattern + (measured - error) /
-        Range error and pattern are errors of the *range*: both go before you divide by the ray's length.
-        p = 2 => measured = measured - pattern; p = 2 and also - pattern) => )
-        You take the pattern away before the wave. Its phase is that of the reading itself.
-        / np.sqrt(1 + squares(raw.shape) / focal**2) =>
-        That is the range along the ray still.
-        raw == invalid => raw == -1
-        raw == invalid => raw == 0
-        The code of no measurement, which is given, became a distance in yours: NaN where raw == invalid.
-        squares(raw.shape) => squares(raw.shape, 0.0)
-        Half a pixel off: the middle of the image is at (width - 1) / 2.
-        - pattern =>
-        Each pixel's own error, `pattern`, is not used.
-        + coefficients[1] * np.sin(p) + coefficients[2] * np.cos(p) =>
-        The wave is missing: you take away the constant alone.
-        4 * measured => measured
-        Your wave goes round once within c / 2f. This error goes round four times.
-    """),
+    }),
 ]

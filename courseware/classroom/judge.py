@@ -19,9 +19,8 @@ from courseware.classroom.answers import AnswerFormatError, decode, one_line
 from courseware.classroom.points import SCORE_POINTS, earned, lesson_of, most_of, secret
 from courseware.classroom.sandbox import Limits, Run, Sandbox
 from courseware.classroom.worlds import graded_project, score_points, score_sentence
-from courseware.lessons.kit.exercises import Exercise, find_exercise, right_on
-from courseware.lessons.kit.general_mistakes import general_mistake
-from courseware.lessons.kit.hints import known_mistake
+from courseware.lessons.kit.exercise import Exercise
+from courseware.lessons.kit.exercises import SEE_CHECK, fault, find_exercise, right_on
 from courseware.lessons.kit.projects import AnswerError, Outcome, Project
 
 Status = Literal["right", "partly right", "wrong", "not attempted"]
@@ -206,15 +205,9 @@ def _sentence(exercise: Exercise, arguments: list, answers: list, right: list[bo
     if troubles:
         where = "" if len(troubles) == len(arguments) or not any(right) else " on some inputs"
         return f"Your function {troubles[0]}{where}."
-    if all(answer is None for answer in answers):
-        return "Your function returns None."
-    with contextlib.suppress(Exception):
-        hint = known_mistake(exercise, arguments, answers) or general_mistake(exercise, arguments, answers)
-        if hint is not None:
-            return hint
-    if any(right):
-        return "Right on some inputs, wrong on others: which case is left out?"
-    return "Not right on any input."
+    with contextlib.suppress(Exception):  # a value of a kind that cannot be compared
+        return fault(exercise, arguments, answers, details=False) or SEE_CHECK
+    return SEE_CHECK
 
 
 # A project's last function

@@ -1,5 +1,7 @@
 """One judge: the same points by every way, for honest notebooks of every form, and sentences that help."""
 
+import re
+
 import nbformat
 import pytest
 
@@ -50,6 +52,26 @@ def test_a_known_mistake_is_named_and_what_cannot_run_is_said(judged):
     assert found.answers[0].sentence in {mistake.hint for mistake in find_exercise("06.1").known}
     assert [one.status for one in found.answers] == ["wrong", "not attempted", "right", "not attempted"]
     assert "is not Python" in found.problems[0]
+
+
+def test_the_grade_says_what_the_lesson_says(judged):
+    """Values in another order, a case that is left out: without a known mistake, too."""
+    swapped = solved("06")["06.4"].replace("return mean, ", "return ", 1) + ", mean"
+    nobody = "def raw_score(hidden, alpha):\n    return hidden / hidden * (0.1 + 0 * alpha)"
+    found = judged({"06.1": nobody, "06.4": swapped}).answers
+    assert found[3].sentence == "The values are right, but in another order than the task names them."
+    assert found[0].sentence.startswith("There is a NaN in your result")
+
+
+@pytest.mark.parametrize(("body", "sentence"), [
+    ("[0.0] * int(1e4 * alpha)", "The result has another shape than the task asks for."),
+    ("'x' * int(1e4 * alpha)", "Return numbers."),
+    ("[0.0] * 5 if alpha > 0.5 else (1 - hidden) * alpha / (alpha + 0.02) + hidden * alpha / (alpha + 2)", "Right on"),
+])  # fmt: skip
+def test_no_sentence_carries_a_secret_input_out(judged, body, sentence):
+    said = judged({"06.1": f"def raw_score(hidden, alpha):\n    return {body}"}).answers[0].sentence
+    assert said.startswith(sentence)
+    assert not re.search(r"\d", said)
 
 
 def test_half_of_the_inputs_right_earns_half(judged):

@@ -2,6 +2,7 @@
 
 import copy
 import importlib
+import re
 import warnings
 from pathlib import Path
 
@@ -40,6 +41,15 @@ def test_the_solution_is_right_and_each_mistake_gets_its_own_hint(exercise):
         for mistake in exercise.known:
             for function in mistake.functions:
                 assert fault(exercise, inputs, answers_of(function, inputs)) == mistake.hint
+
+
+@pytest.mark.parametrize("exercise", [e for e in EXERCISES if e.example], ids=lambda exercise: exercise.number)
+def test_the_solution_gives_the_answer_of_the_example_that_the_task_shows(exercise):
+    arguments, answer = exercise.example
+    found = exercise.solution(*[np.array(value) if isinstance(value, list) else value for value in arguments])
+    for value, shown in zip(parts(found), parts(answer), strict=True):
+        decimals = max((len(digits) for digits in re.findall(r"\.(\d+)", str(shown))), default=6)
+        np.testing.assert_allclose(value, shown, rtol=0, atol=0.5001 * 10.0**-decimals)
 
 
 FORMS = {

@@ -5,7 +5,7 @@ import re
 import types
 
 from courseware.lessons.kit.exercises import find_exercise, judge, lesson_exercises
-from tools.refresh import solution_cell, stub_cell
+from tools.refresh import solution_cell, stub_cell, with_example
 
 # Seeds other than that of `check`: what is right or wrong must not hang on one set of inputs.
 SEEDS = (0, 1, 2)
@@ -53,6 +53,20 @@ def test_every_exercise_is_complete_and_its_first_hint_asks_and_none_is_the_code
         assert not any("```" in hint or re.search(r"\breturn\b[^.?,;]*[(\[]", hint) for hint in hints), number
         for tag in ("exercise", "check", "solution"):
             only(lesson.exercise_cells(number, tag))
+
+
+def require_numbers_of_the_example(notebook) -> None:
+    for number in notebook.exercise_numbers():
+        task = only(notebook.exercise_cells(number, "task")).source
+        assert task == with_example(task, find_exercise(number)), "written by `python -m tools.refresh --solutions`"
+
+
+def test_a_task_shows_the_numbers_of_its_exercises_example(lesson):
+    require_numbers_of_the_example(lesson)
+
+
+def test_a_stage_shows_the_numbers_of_its_exercises_example(project):
+    require_numbers_of_the_example(project)
 
 
 def require_unsolved_stub(notebook, number: str) -> None:

@@ -3,15 +3,17 @@
 import os
 import subprocess
 import sys
+from dataclasses import replace
 
 import nbformat
 import pytest
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from courseware.commands.test import nbval_options
+from courseware.lessons.kit.exercise import Exercise
 from courseware.paths import REPOSITORY
 from tools import refresh
-from tools.refresh import RefreshError
+from tools.refresh import RefreshError, with_example
 
 
 def written(folder, *sources: str):
@@ -134,3 +136,32 @@ def test_numbers_choose_lessons_and_what_cannot_be_is_named(run_tool, capsys):
     assert "no lesson 77; there are: 00, 01" in capsys.readouterr().err
     assert run_tool("refresh", "--cell-timeout", "nan") == 2
     assert "positive number of seconds" in capsys.readouterr().err
+
+
+def scaled(values, factor):
+    """The values times a factor, and the factor."""
+    return values * factor, factor
+
+
+SCALED = Exercise("99.1", scaled, lambda rng: (), example=(([1, 0.5], 0.25), ([0.25, 0.125], 0.25)))
+
+
+def test_the_numbers_of_an_example_are_written_and_its_words_stay():
+    task = "At `factor` = 7.\n\nFor `values` = [[1], [nan]] m and factor = 3 they are [2, -1e-3] and 9. Not 4."
+    numbers = "At `factor` = 7.\n\nFor `values` = [1, 0.5] m and factor = 0.25 they are [0.25, 0.125] and 0.25. Not 4."
+    assert with_example(task, SCALED) == numbers
+    assert with_example(numbers, SCALED) == numbers
+    assert with_example(task, replace(SCALED, example=None)) == task
+
+
+@pytest.mark.parametrize(
+    ("task", "words"),
+    [
+        ("The values double.", "99.1: the task needs an example that begins with 'For `values` = '"),
+        ("For `values` = [1] they are [2] and 2.", "no place for 0.25"),
+        ("For `values` = [1] and `factor` = 2 they are doubled.", r"no place for \[0.25, 0.125\]"),
+    ],
+)
+def test_an_example_without_a_place_for_its_numbers_is_refused(task, words):
+    with pytest.raises(RefreshError, match=words):
+        with_example(task, SCALED)

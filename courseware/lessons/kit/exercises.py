@@ -1,9 +1,9 @@
 """Exercises: `check("03.1", function)` says at once: not attempted, right, or wrong with a hint.
 
-An `Exercise` has a solution, a generator of inputs, and common mistakes, each an edit of the solution with a hint. A
-student's function runs on special cases and on random inputs, and its values are compared with the solution's. If they
-differ, they are compared with the values of every known mistake. The student never sees the inputs. The exercises of
-lesson NN are the list `EXERCISES` in `courseware/answers/lesson_NN.py`.
+A student's function runs on special cases and on random inputs, and its values are compared with the solution's. If
+they differ, they are compared with the values of every known mistake. The student never sees the inputs. The exercises
+of lesson NN are the list `EXERCISES` in `courseware/answers/lesson_NN.py`, and their mistakes with the hints are the
+file `lesson_NN.hints` next to it.
 """
 
 import copy
@@ -11,61 +11,24 @@ import dis
 import functools
 import importlib
 import sys
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal, NamedTuple
 
 import numpy as np
 
 from courseware.lessons.kit.attempt import TIME_LIMIT, attempt
+from courseware.lessons.kit.exercise import Exercise
 from courseware.lessons.kit.hints import MISSING_RETURN, hint, kind_of, known_mistake
-from courseware.lessons.kit.mistakes import Mistake, read_mistakes
+from courseware.lessons.kit.mistakes import EditError, read_hints
 from courseware.lessons.kit.show_progress import update_page
 from courseware.lessons.kit.student_record import record_check, record_folder
 from courseware.lessons.kit.values import agree, agree_all
 
-# Random inputs per check. A case that one input in five has is missed in one of 200 checks only: 0.8^24 = 0.005.
-N_INPUTS = 24
 PACKAGES = {"lesson": "", "foundation": "F", "project": "P"}  # a package's kind -> the letter of its number
 ANSWERS = Path(__file__).parents[2] / "answers"
 MAX_SHOWN = 1000  # characters of a function's printed text; only the first call's text is shown
-
-
-@dataclass(frozen=True)
-class Exercise:
-    """One exercise.
-
-    number: such as "03.1". solution: the right function; the notebook's solution is made of its text. inputs: makes one
-    tuple of arguments from a `numpy.random.Generator`. level: how hard it is. cases: like `inputs`, but each runs once
-    in every check. They are special cases (a seam, a mirror image, empty input, equal values) with a name in words,
-    which a hint may tell: `{"one point": lambda rng: (np.zeros((1, 2)),)}`. mistakes: about nine edits of the solution
-    with their hints (`kit.mistakes`). functions: function -> hint, for mistakes that are no edit. tolerance: absolute
-    and relative, as in `numpy.allclose`. others: other functions that the task allows, for example another estimator.
-    verify: for tasks with many right answers. `verify(arguments, answer)` returns a sentence that says what is wrong,
-    or None. It replaces the comparison with the solution.
-    """
-
-    number: str
-    solution: Callable
-    inputs: Callable[[np.random.Generator], tuple]
-    level: Literal["warm-up", "core", "challenge"] = "core"
-    cases: dict[str, Callable[[np.random.Generator], tuple]] = field(default_factory=dict)
-    mistakes: str = ""
-    functions: dict[Callable, str] = field(default_factory=dict)
-    tolerance: float = 1e-6
-    others: Sequence[Callable] = ()
-    verify: Callable[[tuple, object], str | None] | None = None
-
-    def draw(self, rng: np.random.Generator) -> list[tuple]:
-        """Return the arguments of every call of one check: the cases, then `N_INPUTS` random inputs."""
-        return [make(rng) for make in (*self.cases.values(), *[self.inputs] * N_INPUTS)]
-
-    @functools.cached_property
-    def known(self) -> tuple[Mistake, ...]:
-        """Return the exercise's own mistakes: its edits, then its functions."""
-        others = (Mistake((function,), hint) for function, hint in self.functions.items())
-        return (*read_mistakes(self.solution, self.mistakes), *others)
 
 
 class Verdict(NamedTuple):
@@ -78,6 +41,7 @@ class Verdict(NamedTuple):
 
 SIGNS = {"right": ("\u2713", 32), "wrong": ("\u2717", 31)}  # and their colours, by number (ANSI)
 
+SEE_CHECK = "Not right. The exercise's own check in the notebook says more."
 NOT_ATTEMPTED = Verdict("not attempted", "not attempted yet. Replace the `...` above, then run both cells.")
 
 
@@ -138,11 +102,16 @@ def package_name(number: str) -> str:
     return f"{kind}_{number.removeprefix(PACKAGES[kind])}"
 
 
+@functools.cache
 def lesson_exercises(lesson: str) -> tuple[Exercise, ...]:
-    """Return the exercises of lesson "03" or foundation "F1", or the stages of "P1". Without a file of them, ()."""
+    """Return the exercises of lesson "03" or foundation "F1", or the stages of "P1", with their hints; () if none."""
     if lesson not in lesson_numbers():
         return ()
-    return tuple(importlib.import_module(f"courseware.answers.{package_name(lesson)}").EXERCISES)
+    exercises = importlib.import_module(f"courseware.answers.{package_name(lesson)}").EXERCISES
+    hints = read_hints(path := ANSWERS / f"{package_name(lesson)}.hints")
+    if unknown := set(hints) - {exercise.number for exercise in exercises}:
+        raise EditError(f"{path.name}: there is no exercise {', '.join(unknown)}. Correct the heading in brackets.")
+    return tuple(replace(exercise, mistakes=hints.get(exercise.number, "")) for exercise in exercises)
 
 
 def judge(exercise: Exercise, function: Callable, seed: int = 0, seconds: float = TIME_LIMIT) -> Verdict:
@@ -181,20 +150,25 @@ def right_on(exercise: Exercise, arguments: list[tuple], answers: list) -> list[
     return max(found, key=sum)
 
 
-def fault(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
-    """Return a sentence about a fault in the answers, or None. It shows neither inputs nor right values."""
+def fault(exercise: Exercise, arguments: list[tuple], answers: list, details: bool = True) -> str | None:
+    """Return a sentence about a fault in the answers, or None. It shows neither inputs nor right values.
+
+    details: whether it may describe the answers (`hint`). Without them, a sentence of `verify` with a number in it is
+    left out, because the number may be a value.
+    """
     if exercise.verify is not None:
         for given, answer in zip(arguments, answers, strict=True):
             if answer is None:
                 return MISSING_RETURN
             if (sentence := exercise.verify(copy.deepcopy(given), answer)) is not None:
-                return known_mistake(exercise, arguments, answers) or sentence
+                safe = details or not any(map(str.isdigit, sentence))
+                return known_mistake(exercise, arguments, answers) or (sentence if safe else SEE_CHECK)
         return None
     for allowed in (exercise.solution, *exercise.others):
         values = [allowed(*copy.deepcopy(given)) for given in arguments]
         if agree_all(answers, values, exercise.tolerance):
             return None
-    return hint(exercise, arguments, answers)
+    return hint(exercise, arguments, answers, details)
 
 
 def is_stub(function: Callable) -> bool:

@@ -1,28 +1,25 @@
 """General mistakes: slips that people make in every exercise, so that no exercise lists them.
 
 A slip changes the values that the solution returns (degrees for radians), the values that it is given (two arguments
-exchanged), or one place of its code (`axis=0` for `axis=1`). A sentence belongs to each.
+exchanged), or one place of its code (`axis=0` for `axis=1`). A sentence belongs to each. Degrees and radians are
+exchanged in angles only: in arguments and results that a name or the docstring of the solution calls an angle.
 """
-
-from __future__ import annotations
 
 import ast
 import copy
 import functools
 import inspect
+import re
 import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from itertools import accumulate
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from courseware.lessons.kit.attempt import TIME_LIMIT, attempt
+from courseware.lessons.kit.exercise import Exercise
 from courseware.lessons.kit.mistakes import compiled
 from courseware.lessons.kit.values import agree, as_numbers, is_row_of, parts
-
-if TYPE_CHECKING:  # because `exercises` imports this module
-    from courseware.lessons.kit.exercises import Exercise
 
 SIGN = "Look at the signs: one of them is the other way round."
 DEGREES = "Look at the units: are these degrees where radians are asked, or the reverse?"
@@ -54,12 +51,17 @@ LIMIT = 0.2  # [s] of one call of a slip, which may make a loop endless; the rig
 OF_ARGUMENTS = ((SIGN, np.negative), (DEGREES, np.rad2deg), (DEGREES, np.deg2rad), (TRANSPOSED, np.transpose))
 OF_VALUES = (*OF_ARGUMENTS[:3], (SQUARED, np.square), (SQUARED, np.sqrt), OF_ARGUMENTS[3], (ABSOLUTE, np.abs))
 
+ANGLE = re.compile(
+    r"(?<![a-z])(angles?|theta|roll|pitch|yaw|headings?|azimuths?|elevations?|rad(ians)?|deg(rees)?)(?![a-z])"
+)
+BESIDE_THE_RESULT = re.compile(r", from |;| after | by | with(in)? |_from_")  # what follows describes something else
+
 
 def general_mistake(exercise: Exercise, arguments: list[tuple], answers: list) -> str | None:
     """Return the sentence of the slip that gives exactly these answers, or None."""
     with np.errstate(all="ignore"):
         wanted = [exercise.solution(*copy.deepcopy(given)) for given in arguments]
-        for sentence, slip in value_slips(wanted):
+        for sentence, slip in value_slips(exercise.solution, wanted):
             if all(agree(a, slip(w), exercise.tolerance) for a, w in zip(answers, wanted, strict=True)):
                 return sentence
         for sentence, function in [*argument_slips(exercise.solution, arguments[-1]), *code_slips(exercise.solution)]:
@@ -74,15 +76,33 @@ def gives(function: Callable, given: tuple, answer: object, tolerance: float, se
     return call.failure is None and agree(answer, call.value, tolerance)
 
 
-def value_slips(wanted: list) -> Iterator[tuple[str, Callable]]:
+def value_slips(solution: Callable, wanted: list) -> Iterator[tuple[str, Callable]]:
     """Yield slips of the returned value: of all parts of a tuple, or of one part alone."""
-    n = len(parts(wanted[0]))
+    n, whole = len(parts(wanted[0])), np.asarray(parts(wanted[0])[0]).dtype.kind == "i"
     for sentence, change in OF_VALUES:
+        if sentence is DEGREES and (whole or not returns_angle(solution)):
+            continue
         for which in [range(n), *([k] for k in range(n) if n > 1)]:
             yield sentence, functools.partial(_changed, change, which)
-    if np.asarray(parts(wanted[0])[0]).dtype.kind == "i":
+    if whole:
         for step in (1, -1):
             yield OFF_BY_ONE, functools.partial(_changed, functools.partial(np.add, step), range(n))
+
+
+def returns_angle(solution: Callable) -> bool:
+    """Return whether a function's name, or the beginning of its docstring, calls the result an angle."""
+    if not inspect.isfunction(solution):
+        return False
+    result = (BESIDE_THE_RESULT.split(text)[0] for text in (solution.__name__, solution.__doc__ or ""))
+    return any(ANGLE.search(text.lower()) for text in result)
+
+
+def takes_angle(solution: Callable, k: int) -> bool:
+    """Return whether argument k is an angle by its name, or by the unit behind its name in the docstring."""
+    if not inspect.isfunction(solution):
+        return False
+    name = [*inspect.signature(solution).parameters][k]
+    return bool(ANGLE.search(name) or re.search(rf"\b{name}`?( \([^)]*\))? \[(rad|deg)", solution.__doc__ or ""))
 
 
 def _changed(change: Callable, which: Sequence[int], value: object) -> object:
@@ -95,8 +115,13 @@ def argument_slips(solution: Callable, given: tuple) -> Iterator[tuple[str, Call
     """Yield slips of the given values: one argument changed, or two of the same shape exchanged."""
     numbers = [k for k, value in enumerate(given) if np.asarray(value).dtype.kind in "if"]
     for k in numbers:
+        fits = {
+            SIGN: True,
+            DEGREES: np.asarray(given[k]).dtype.kind == "f" and takes_angle(solution, k),
+            TRANSPOSED: np.ndim(given[k]) == 2,
+        }
         for sentence, change in OF_ARGUMENTS:
-            if change is not np.transpose or np.ndim(given[k]) == 2:
+            if fits[sentence]:
                 yield sentence, lambda *g, k=k, change=change: solution(*g[:k], change(g[k]), *g[k + 1 :])
         for j in numbers[:k]:
             if np.shape(given[j]) == np.shape(given[k]):

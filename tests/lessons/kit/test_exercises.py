@@ -5,12 +5,14 @@ import re
 import numpy as np
 import pytest
 
+from courseware.lessons.kit.exercise import Exercise
 from courseware.lessons.kit.exercises import (
     NOT_ATTEMPTED,
-    Exercise,
+    SEE_CHECK,
     UnknownExerciseError,
     Verdict,
     check,
+    fault,
     find_exercise,
     is_stub,
     judge,
@@ -124,6 +126,24 @@ def test_another_way_to_the_same_values_is_right(exercise, function):
 def test_a_wrong_answer_gets_its_sentence(exercise, function, words):
     with np.errstate(invalid="ignore"):
         assert words in judge(exercise, function).message
+
+
+@pytest.mark.parametrize(
+    ("exercise", "answer", "sentence"),
+    [
+        (PAIR, lambda x: (x.max(), x.min()), "The values are right, but in another order than the task names them."),
+        (PAIR, lambda x: x.tolist(), "Return 2 values, separated by commas."),
+        (DOUBLE, lambda x: x[0], "The result has another shape than the task asks for."),
+        (DOUBLE, lambda x: "two", "Return numbers."),
+        (CORNER, lambda x: x.sum() if x.size else 1.0, "wrong on a special case: an empty list."),
+        (find_exercise("03.4"), lambda corners, near: corners[:1] + near, SEE_CHECK),
+        (find_exercise("03.4"), lambda corners, near: corners * [1, 1, -1] - 9, "Some of your corners lie before"),
+    ],
+)
+def test_without_details_a_sentence_holds_nothing_of_the_answers(exercise, answer, sentence):
+    arguments = exercise.draw(np.random.default_rng(0))
+    said = fault(exercise, arguments, [answer(*given) for given in arguments], details=False)
+    assert sentence in said
 
 
 def test_a_special_case_is_named_and_other_cases_are_counted():

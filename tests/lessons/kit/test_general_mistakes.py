@@ -5,11 +5,12 @@ import pytest
 
 from course_lib.geometry import wrap_angle
 from courseware.lessons.kit import general_mistakes as general
-from courseware.lessons.kit.exercises import Exercise, judge
+from courseware.lessons.kit.exercise import Exercise
+from courseware.lessons.kit.exercises import judge
 
 
 def turned(R, points, theta):
-    """Points (n, 2) turned by R, then by theta; (n, 2) and a heading."""
+    """Points (n, 2) and a heading [rad]: turned by R, the heading by theta, too."""
     shifted = points - points.mean(axis=0)
     heading = wrap_angle(np.arctan2(R[1, 0], R[0, 0]) + theta)
     return shifted @ R.T, heading
@@ -39,6 +40,11 @@ def deviation(values):
     return np.deg2rad(np.clip(np.std(values), 0.5, None))
 
 
+def first_sum(values, count):
+    """Sum of the first `count` values, at least of one."""
+    return values[: max(int(count), 1)].sum()
+
+
 def a_rotation(rng):
     theta = rng.uniform(-3, 3)
     return np.array([[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]])
@@ -51,6 +57,8 @@ def given_numbers(rng):
 TURNED = Exercise("99.1", turned, lambda rng: (a_rotation(rng), rng.normal(size=(5, 2)), rng.uniform(-3, 3)))
 SPREAD = Exercise("99.2", spread, given_numbers)
 FIRST = Exercise("99.3", first_below, lambda rng: (rng.integers(0, 4, 8).astype(float), 1.0))
+BELOW_2 = Exercise("99.9", first_below, lambda rng: (rng.integers(0, 4, 8).astype(float), 2.0))
+FIRST_SUM = Exercise("99.10", first_sum, lambda rng: (rng.normal(size=9), int(rng.integers(2, 9))))
 NEGATIVE = Exercise("99.8", lambda values: -np.abs(values), given_numbers)
 TAN = Exercise("99.4", np.tan, lambda rng: (rng.uniform(-1, 1, 3),))
 SQUARE = Exercise("99.5", column_means, lambda rng: (rng.normal(size=(3, 3)), rng.normal(size=(3, 3))))
@@ -72,6 +80,7 @@ def cubed(values):
     [
         (TURNED, lambda R, points, theta: turned(R.T, points, theta), general.TRANSPOSED),
         (TURNED, lambda R, points, theta: turned(R, points, -theta), general.SIGN),
+        (TURNED, lambda R, points, theta: turned(R, points, np.deg2rad(theta)), general.DEGREES),
         (TURNED, with_heading(lambda *g: np.rad2deg(turned(*g)[1])), general.DEGREES),
         (TURNED, with_heading(lambda R, p, theta: np.arctan2(R[1, 0], R[0, 0]) + theta), general.WRAP),
         (TURNED, with_heading(lambda R, p, theta: wrap_angle(np.arctan2(R[0, 0], R[1, 0]) + theta)), general.ARCTAN2),
@@ -115,3 +124,16 @@ def test_a_slip_gets_its_sentence(exercise, answer, sentence):
 def test_what_is_wrong_in_no_known_way_gets_no_such_sentence(exercise, answer):
     sentence = judge(exercise, answer).message
     assert not [text for text in vars(general).values() if isinstance(text, str) and text in sentence[9:]]
+
+
+@pytest.mark.parametrize(
+    ("exercise", "answer"),
+    [
+        (BELOW_2, lambda values, limit: first_below(values, 0.5)),  # as if the limit were 57 times as small
+        (FIRST_SUM, lambda values, count: values.sum()),  # as if the count were 57 times as large
+        (SPREAD, lambda values: np.rad2deg(spread(values))),
+    ],
+)
+def test_degrees_are_a_slip_of_angles_only(exercise, answer):
+    for seed in range(2):
+        assert general.DEGREES not in judge(exercise, answer, seed).message

@@ -42,7 +42,6 @@ def by_integrals(variance, innovation, r):
 
 
 RIGHT = [
-    ("F1.1", by_logarithms),
     ("F1.1", lambda w, p: [w * p / (w @ p), (w @ p) ** 2 / ((w * w) @ (p * p))]),
     ("F1.2", tooth_by_tooth),
     ("F1.3", by_integrals),

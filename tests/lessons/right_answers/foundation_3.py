@@ -24,18 +24,6 @@ def by_filterpy(z, x, P, F, Q, H, R):
     return [x for x, _ in found], [P for _, P in found]
 
 
-def by_certainty(z, x, P, F, Q, H, R):
-    means, covariances = [], []
-    for one in z:
-        certainty = np.linalg.inv(F @ P @ F.T + Q)
-        pull = certainty @ F @ x
-        if np.isfinite(one).all():
-            certainty, pull = certainty + H.T @ np.linalg.solve(R, H), pull + H.T @ np.linalg.solve(R, one)
-        x, P = np.linalg.solve(certainty, pull), np.linalg.inv(certainty)
-        means, covariances = [*means, x], [*covariances, P]
-    return means, covariances
-
-
 def by_least_squares(x0, P0, x1, P1, C):
     both = np.linalg.pinv(np.block([[P0, C], [C.T, P1]]))
     stacked = np.vstack([np.eye(len(x0))] * 2)
@@ -46,6 +34,5 @@ def by_least_squares(x0, P0, x1, P1, C):
 RIGHT = [
     ("F3.1", one_after_the_other),
     ("F3.2", by_filterpy),
-    ("F3.2", by_certainty),
     ("F3.3", by_least_squares),
 ]

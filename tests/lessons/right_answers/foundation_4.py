@@ -14,16 +14,6 @@ def cameras_by_null_vectors(R, c):
     return [Vt[2] * np.sign(Vt[2] @ c), U[:, 2] * np.sign(U[:, 2] @ (-R.T @ c))]
 
 
-def distance_by_sines(x1, x2, R, c):
-    """By the law of sines, and NaN where the normals of the triangle point different ways."""
-    y, found = x2 @ R.T, []
-    for a, b in zip(x1, y, strict=True):
-        normal = np.cross(a, b)
-        one, other = np.cross(c, b) @ normal, np.cross(c, a) @ normal
-        found.append(np.linalg.norm(np.cross(c, b)) / np.linalg.norm(normal) if min(one, other) > 0 else np.nan)
-    return found
-
-
 def distance_by_least_squares(x1, x2, R, c):
     """Both lengths of d1 x1 - d2 y = c, match by match."""
     pairs = [np.linalg.lstsq(np.array([a, -R @ b]).T, c, rcond=None)[0] for a, b in zip(x1, x2, strict=True)]
@@ -43,8 +33,6 @@ def sigma_by_differences(x1, x2, R, c, sigma):
 
 RIGHT = [
     ("F4.1", cameras_by_null_vectors),
-    ("F4.1", lambda R, c: unit(np.array([c, -c @ R]))),
-    ("F4.2", distance_by_sines),
     ("F4.2", distance_by_least_squares),
     ("F4.3", sigma_by_differences),
 ]

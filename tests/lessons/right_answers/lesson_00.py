@@ -1,7 +1,5 @@
 """Right answers to lesson 00 by other ways than its solutions."""
 
-import math
-
 import numpy as np
 
 REACH = np.array([0.4, 0.3, 0.18])
@@ -44,12 +42,7 @@ def weighted_cloud(score, start):
 
 RIGHT = [
     ("00.1", lambda m, s: np.maximum(m, s) - np.minimum(m, s)),
-    ("00.1", lambda m, s: [[abs(a - b) for a, b in zip(*rows, strict=True)] for rows in zip(m, s, strict=True)]),
-    ("00.1", lambda m, s: np.abs(m.astype(np.float32) - s.astype(np.float32))),
-    ("00.1", lambda m, s: np.sqrt((s - m) ** 2)),
     ("00.2", lambda v, a: a * (1 - v) / v),
-    ("00.2", lambda v, a: np.reshape([math.inf if x == 0 else a * (1 - x) / x for x in v.flat], v.shape)),
-    ("00.2", lambda v, a: a * (1 / v - 1)),
     ("00.3", lambda score, start: best_of(score, start, IN_TURN)),
     ("00.3", lambda score, start: list(best_of(score, start, GRIDS))),
     ("00.3", one_pose_at_a_time),

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from course_lib.geometry import BODY_FROM_OPTICAL as B
-from course_lib.geometry import optical_pose, pose_matrix, state_from_matrix
+from course_lib.geometry import optical_pose, pose_matrix
 
 
 def rotation(state):
@@ -33,13 +33,7 @@ def tried_one_by_one(angles, rotations, new, firsts=(True, False), signs=(1, -1)
 
 RIGHT = [
     ("01.1", lambda p, s: (optical_pose(s) @ np.column_stack([p, np.ones(len(p))]).T)[:3].T),
-    ("01.1", lambda p, s: [list(rotation(s) @ B @ q + s[:3]) for q in p]),
-    ("01.1", lambda p, s: [(pose_matrix(s) @ [q[2], -q[0], -q[1], 1.0])[:3] for q in p]),
-    ("01.1", lambda p, s: np.float32(p @ (rotation(s) @ B).T + s[:3])),
-    ("01.2", lambda m: [*m[:3, 3], *angles_of(m[:3, :3] @ B.T)]),
     ("01.2", lambda m: np.r_[m[:3, 3], Rotation.from_matrix(m[:3, :3] @ B.T).as_euler("ZYX")[::-1]]),
-    ("01.3", lambda a, b: state_from_matrix(np.linalg.solve(pose_matrix(a), pose_matrix(b)))),
     ("01.3", lambda a, b: [*((b - a)[:3] @ rotation(a)), *angles_of(rotation(a).T @ rotation(b))]),
     ("01.4", tried_one_by_one),
-    ("01.4", lambda a, R, new: tried_one_by_one(a, R, new, firsts=(False, True), signs=(-1, 1)).tolist()),
 ]

@@ -10,19 +10,6 @@ def elevation(p):
     return math.asin(p[2] / math.hypot(*p))
 
 
-def walked(steps):
-    """Places of a chain, with a place and a turn carried along."""
-    place, turn, places = np.zeros(3), np.eye(3), [[0.0, 0.0, 0.0]]
-    for step in steps:
-        place, turn = place + turn @ step[:3, 3], turn @ step[:3, :3]
-        places.append(list(place))
-    return places
-
-
-def nearest(seen, mapped):
-    return np.linalg.norm(seen[:, None] - mapped[None], axis=2).min(axis=1)
-
-
 def simulated_sigma(n_steps, spacing, sigma_place, sigma_heading, runs=10_000):
     """The same sigma by simulation: rows of stations with random errors."""
     rng = np.random.default_rng(0)
@@ -36,12 +23,8 @@ def simulated_sigma(n_steps, spacing, sigma_place, sigma_heading, runs=10_000):
 
 
 RIGHT = [
-    ("02.1", lambda p: ([math.hypot(*q) for q in p], [math.atan2(q[1], q[0]) for q in p], [*map(elevation, p)])),
     ("02.1", lambda p: np.stack([np.linalg.norm(p, axis=1), np.angle(p[:, 0] + 1j * p[:, 1]), [*map(elevation, p)]])),
-    ("02.1", lambda p: [[f(q) for q in p] for f in (np.linalg.norm, lambda q: math.atan2(q[1], q[0]), elevation)]),
-    ("02.2", walked),
     ("02.2", lambda steps: np.stack(list(accumulate(steps, np.matmul, initial=np.eye(4))))[:, :3, 3]),
-    ("02.3", lambda s, m, limit: np.array([np.mean(nearest(s, m) > limit)])),
     ("02.3", lambda s, m, limit: sum(not any(np.linalg.norm(m - p, axis=1) <= limit) for p in s) / len(s)),
     ("02.4", simulated_sigma),
     ("02.4", lambda n, d, p, h: math.sqrt(n * p * p + sum((d * h * k) ** 2 for k in range(n)))),

@@ -3,10 +3,6 @@
 import numpy as np
 
 
-def depth(b, near, far):
-    return near * far / (far - b * (far - near))
-
-
 def seen(layers, near, far):
     return np.where((layers >= near) & (layers <= far), layers, np.inf)
 
@@ -23,13 +19,9 @@ def by_cases(corners, near):
 
 
 RIGHT = [
-    ("03.1", lambda b, n, f: [[np.inf if v == 1 else 1 / (v / f + (1 - v) / n) for v in row] for row in b]),
-    ("03.1", lambda b, n, f: np.where(depth(b, n, f) >= f, np.inf, depth(b, n, f))),
     ("03.1", lambda b, n, f: 1 / np.where(b == 1, 0, (1 - b) / n + b / f)),
-    ("03.2", lambda a, b, s: a * b / (b + s * (a - b))),
     ("03.2", lambda a, b, s: [1 / (1 / a + t * (1 / b - 1 / a)) for t in s]),
     ("03.3", lambda layers, n, f: np.sort(seen(layers, n, f), axis=0)[0]),
-    ("03.3", lambda layers, n, f: np.nanmin(seen(layers, n, f), axis=0).tolist()),
     ("03.4", by_cases),
     ("03.4", lambda c, near: np.array(by_cases(c, near))[::-1]),
     ("03.4", lambda c, near: np.float32(np.roll(np.reshape(by_cases(c, near), (-1, 3)), 1, axis=0))),

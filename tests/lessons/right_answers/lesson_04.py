@@ -3,8 +3,6 @@
 from functools import partial
 
 import numpy as np
-from scipy.integrate import trapezoid
-from scipy.stats import norm
 
 LIGHT = 299_792_458.0  # m/s
 
@@ -27,13 +25,6 @@ def halving(near, far):
     return share
 
 
-def least_by_parts(n):
-    """From P(least > x) = sf(x)^n alone."""
-    x = np.linspace(-8, 8, 8001)
-    mean, square = x[0] + trapezoid(norm.sf(x) ** n, x), x[0] ** 2 + 2 * trapezoid(x * norm.sf(x) ** n, x)
-    return mean, np.sqrt(square - mean**2)
-
-
 def least_by_drawing(n):
     least = np.random.default_rng(1).standard_normal((100_000, n), dtype=np.float32).min(axis=1)
     return [least.mean(), least.std()]
@@ -41,15 +32,7 @@ def least_by_drawing(n):
 
 RIGHT = [
     ("04.1", lambda r, rays: r * np.cos(np.arctan(np.hypot(rays[..., 0], rays[..., 1])))),
-    ("04.1", lambda r, rays: r / (rays**2).sum(-1) ** 0.5),
-    (
-        "04.1",
-        lambda r, rays: [[r[v, u] / np.linalg.norm(rays[v, u]) for u in range(r.shape[1])] for v in range(len(r))],
-    ),
     ("04.2", partial(by_candidates, lambda c, b, turn: 1 - np.cos(2 * np.pi * (c - b) / turn))),
-    ("04.2", partial(by_candidates, lambda c, b, turn: np.minimum((c - b) % turn, (b - c) % turn))),
     ("04.3", partial(share_by, halving)),
-    ("04.3", partial(share_by, lambda near, far: far / (far - near))),
-    ("04.4", least_by_parts),
     ("04.4", least_by_drawing),
 ]

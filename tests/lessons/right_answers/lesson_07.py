@@ -16,20 +16,10 @@ def strata(w):
     return parts
 
 
-def error_by_parts(w, x):
-    return np.sqrt(np.sum(np.maximum(strata(w) @ x**2 - (strata(w) @ x) ** 2, 0))) / len(w)
-
-
 RIGHT = [
     ("07.1", lambda y, w: (np.angle(w @ np.exp(1j * y)), abs(w @ np.exp(1j * y)))),
-    ("07.1", lambda y, w: [np.array([np.angle(w @ np.exp(1j * y))]), np.float32(abs(w @ np.exp(1j * y)))]),
-    ("07.2", lambda w: [(len(w) * w).astype(int), (len(w) * w % 1) / np.sum(len(w) * w % 1)]),
     ("07.2", lambda w: ([int(len(w) * share) for share in w], np.modf(len(w) * w)[0] / sum(np.modf(len(w) * w)[0]))),
-    ("07.3", lambda w: len(w) - sum((1 - share) ** len(w) for share in w)),
-    ("07.3", lambda w: np.array([np.sum(1 - np.prod(np.tile(1 - w, (len(w), 1)), axis=0))])),
     ("07.3", lambda w: binom.sf(0, len(w), w).sum()),
-    ("07.4", error_by_parts),
     # From the covariance of the numbers of copies.
     ("07.4", lambda w, x: (x @ sum(np.diag(p) - np.outer(p, p) for p in strata(w)) @ x) ** 0.5 / len(w)),
-    ("07.4", lambda w, x: np.float32([error_by_parts(w, x)])),
 ]

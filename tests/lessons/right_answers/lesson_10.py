@@ -11,11 +11,6 @@ from courseware.lessons.lesson_10.adaptive_count import kld_count
 ENOUGH = 10**6
 
 
-def by_running_sum(free, cell, u):
-    chosen = np.searchsorted(np.cumsum(free.ravel()), u[:, 0] * free.sum(), side="right")
-    return np.transpose([cell * (chosen % free.shape[1] + u[:, 1]), cell * (chosen // free.shape[1] + u[:, 2])])
-
-
 def by_loops(free, cell, u):
     listed = [(r, c) for r in range(free.shape[0]) for c in range(free.shape[1]) if free[r, c]]
     chosen = [listed[int(a * len(listed))] for a in u[:, 0]]
@@ -24,11 +19,6 @@ def by_loops(free, cell, u):
 
 def means(scores, share):
     return np.array(list(accumulate(scores, lambda m, s: m if np.isnan(s) else share * s + (1 - share) * m)))
-
-
-def by_slices(bins, least):
-    ends = range(1, len(bins) + 1)
-    return next((n for n in ends if n >= kld_count(len(set(bins[:n].tolist())), least, ENOUGH)), len(bins))
 
 
 def by_while(bins, least):
@@ -42,14 +32,6 @@ def by_while(bins, least):
 def near(a, b, metres, radians):
     turn = abs(a[2] - b[2]) % (2 * np.pi)
     return np.hypot(a[0] - b[0], a[1] - b[1]) < metres and min(turn, 2 * np.pi - turn) < radians
-
-
-def by_lists(states, scores, *limits):
-    kept = []
-    for i in sorted(range(len(scores)), key=lambda i: -scores[i]):
-        if all(not near(states[i], states[j], *limits) for j in kept):
-            kept.append(i)
-    return kept
 
 
 def by_striking_out(states, scores, *limits):
@@ -71,16 +53,13 @@ def by_counting(bins, miss, probability):
 
 ANSWERS = {
     "10.1": [
-        by_running_sum,
         by_loops,
-        lambda f, c, u: np.float32((np.argwhere(f)[np.floor(u[:, 0] * f.sum()).astype(int), ::-1] + u[:, 1:]) * c),
     ],
     "10.2": [
         lambda s, a, b: [float(max(0, (u - v) / u)) for v, u in zip(means(s, a), means(s, b), strict=True)],
-        lambda s, a, b: np.clip(1 - means(s, a) / means(s, b), 0, None),
     ],
-    "10.3": [by_slices, by_while],
-    "10.4": [by_lists, by_striking_out, lambda *given: np.array(by_lists(*given))],
+    "10.3": [by_while],
+    "10.4": [by_striking_out],
     "10.5": [by_counting],
 }
 RIGHT = [(number, answer) for number, answers in ANSWERS.items() for answer in answers]

@@ -29,12 +29,6 @@ def suppressed(boxes, scores, threshold, limit):
     return kept
 
 
-def class_after_class(boxes, scores, threshold, limit):
-    rows = [np.flatnonzero(scores.argmax(axis=1) == one) for one in range(scores.shape[1])]
-    kept = [row[i] for row in rows for i in suppressed(boxes[row], scores[row], threshold, limit)]
-    return np.array(sorted(kept, key=lambda i: -scores[i].max()), dtype=int)
-
-
 def lowest(scores, right, least, z=1.96):
     """With Wilson's lower end as the lower root of (p - k / n)^2 = z^2 p (1 - p) / n."""
     for t in sorted(set(scores)):
@@ -51,12 +45,9 @@ def just_below(scores, right, least):
 
 
 RIGHT = [
-    ("12.1", lambda boxes, w, s: [s <= (box[0] + box[2]) / 2 < s + w for box in boxes]),
     ("12.1", lambda boxes, w, s: ((boxes[:, [0, 2]].mean(axis=1) - s) // w == 0).astype(int)),
     ("12.2", nearest_copy),
-    ("12.2", lambda a, b, w: [iou(sum(across(a, b, turn) for turn in (-w, 0, w)), a, b)]),
     ("12.3", suppressed),
-    ("12.3", class_after_class),
     ("12.4", lowest),
     ("12.4", just_below),
     ("12.4", lambda *given: lowest(*given, 1.959964)),

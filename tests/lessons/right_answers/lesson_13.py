@@ -16,14 +16,6 @@ def by_angles(upper, lower, baseline):
     return np.where(gap > PI / 2, np.arccos(np.abs(z_l)), np.arcsin(np.sqrt(1 - z_l**2) * np.sin(gap)))
 
 
-def nearest_point(upper, lower, baseline):
-    """The point of each half-circle that is nearest, and the chord to it."""
-    ahead = upper - np.outer(upper @ baseline, baseline)
-    ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
-    along = np.clip(np.arctan2(lower @ baseline, np.sum(lower * ahead, axis=1)), -PI / 2, PI / 2)[:, None]
-    return list(2 * np.arcsin(np.linalg.norm(lower - np.cos(along) * ahead - np.sin(along) * baseline, axis=1) / 2))
-
-
 def count_by_count(counts):
     """From the largest count down: what hangs together by one count is a pair, or a tie."""
     left, result = np.argwhere(counts > 0).tolist(), [-1] * len(counts)
@@ -63,11 +55,8 @@ def by_median(upper, lower):
 
 RIGHT = [
     ("13.1", lambda v, rho, b, h: np.arctan2(rho, rho / np.tan(v / h * PI) + b) / PI * h),
-    ("13.1", lambda v, rho, b, h: [h / 2 - h / PI * np.arctan(np.tan((h / 2 - r) * PI / h) + b / rho) for r in v]),
     ("13.2", by_angles),
-    ("13.2", nearest_point),
     ("13.3", count_by_count),
-    ("13.3", lambda counts: np.array(count_by_count(counts), float)),
     ("13.4", by_histogram),
     ("13.4", by_median),
 ]

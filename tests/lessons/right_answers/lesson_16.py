@@ -22,11 +22,6 @@ def scale_by_svd(s, m):
     return np.array([(d[0] + np.sign(np.linalg.det(b.T @ a)) * d[1]) / np.sum(a**2)])
 
 
-def scale_by_search(s, m):
-    a, b = centred(turned(s, by_svd(s, m, np.ones(len(s)))[2]), m)
-    return np.linalg.lstsq(a.reshape(-1, 1), b.ravel(), rcond=None)[0][0]
-
-
 def rests(s, m):
     """The lengths of the residuals without each pair."""
     fits = [fit_rigid_2d(np.delete(s, k, 0), np.delete(m, k, 0)) for k in range(len(s))]
@@ -42,13 +37,6 @@ def by_complex_numbers(s, m, w):
     return t.real, t.imag, np.angle(turn)
 
 
-def by_svd(s, m, w):
-    s_g, m_g = w @ s / w.sum(), w @ m / w.sum()
-    u, _, vt = np.linalg.svd((w[:, None] * (m - m_g)).T @ (s - s_g))
-    turn = u @ np.diag([1, np.linalg.det(u @ vt)]) @ vt
-    return *(m_g - turn @ s_g), np.arctan2(turn[1, 0], turn[0, 0])
-
-
 def by_least_squares(s, m, w):
     """A general optimizer with its default tolerances, from the plain fit on."""
     start = np.add(by_complex_numbers(s, m, np.ones(len(s))), [0.3, -0.2, 0.2])
@@ -57,23 +45,10 @@ def by_least_squares(s, m, w):
     return x, y, wrap_angle(theta)
 
 
-def bars_by_differences(s, theta, covariances):
-    """Move every coordinate of every point a little, and fit again."""
-    steps = 1e-5 * np.eye(s.size).reshape(-1, *s.shape)
-    ends = [[fit_rigid_2d(s + way * step, turned(s, theta)) for step in steps] for way in (1, -1)]
-    rows = (np.subtract(*ends) / 2e-5).T.reshape(3, *s.shape)
-    return np.sqrt(np.einsum("ink,nkl,inl->i", rows, covariances, rows))
-
-
 RIGHT = [
     ("16.1", lambda s, m, t: (m - turned(s, t)).mean(axis=0)),
-    ("16.1", lambda s, m, t: (m.mean(axis=0) - turned(s.mean(axis=0)[None], t)[0]).tolist()),
-    ("16.2", lambda s, m: abs(np.vdot(*(z @ [1, 1j] for z in centred(s, m)))) / np.sum(centred(s)[0] ** 2)),
-    *[("16.2", way) for way in (scale_by_svd, scale_by_search)],
+    ("16.2", scale_by_svd),
     ("16.3", lambda s, m: np.argmin([np.linalg.norm(rest) for rest in rests(s, m)])),
-    ("16.3", lambda s, m: int(np.argmin([np.mean(rest**2) for rest in rests(s, m)]))),
-    *[("16.4", way) for way in (by_complex_numbers, by_svd, by_least_squares)],
-    ("16.4", lambda s, m, w: fit_rigid_2d(s, m, weights=w)),
+    ("16.4", by_least_squares),
     ("16.5", lambda s, t, c: np.sqrt(np.diag(fit_covariance(Pose2D(0, 0, t), s, turned(s, t), noise=c)))),
-    ("16.5", bars_by_differences),
 ]

@@ -6,8 +6,6 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 from scipy.stats import multivariate_normal
 
-from course_lib.spherical_stereo import fit_rigid_2d
-
 
 def colour(a, s, b, t):
     hue = (np.abs((a - b + 180) % 360 - 180) / np.maximum(600 / np.minimum(s, t), 12.0)) ** 2 / 2
@@ -69,12 +67,9 @@ def by_densities(S, p, clutter, e, g):
 
 
 RIGHT = [
-    *[("18.1", way) for way in (colour, colour_by_loop)],
-    ("18.1", lambda *given: colour(*(np.float32(one) for one in given))),
-    *[("18.2", way) for way in (complex_pose, fit_rigid_2d)],
-    ("18.2", lambda s, m: np.array(complex_pose(s, m))),
-    ("18.2", lambda s, m: list(complex_pose(s.astype(np.float32), m.astype(np.float32)))),
-    *[("18.3", way) for way in (padded, lambda cost: padded(cost).astype(np.float32))],
-    *[("18.4", way) for way in (by_sorting, every_threshold)],
-    *[("18.5", way) for way in (by_the_cost, by_densities)],
+    ("18.1", colour_by_loop),
+    ("18.2", complex_pose),
+    ("18.3", padded),
+    ("18.4", by_sorting),
+    ("18.5", by_densities),
 ]

@@ -55,33 +55,20 @@ def walking_along(w, u):
     return found
 
 
-def by_counting(w, u):
-    ends = np.cumsum(w)
-    ends[np.flatnonzero(w)[-1] :] = 1.0
-    upto = np.ceil(len(w) * ends - u).astype(int).clip(0, len(w))
-    return np.repeat(np.arange(len(w)), np.diff(upto, prepend=0))
-
-
-def without_the_weightless(w, u):
-    heavy = np.flatnonzero(w)
-    return heavy[np.searchsorted(np.cumsum(w[heavy]) / w.sum(), (np.arange(len(w)) + u) / len(w))]
-
-
 def one_round(particles, measured, render, sigma, beta, noise, u):
     moved = np.array(by_rotation_matrices(particles, sigma, noise))
     w = np.array(weights_by_loops(by_nansum(measured, render(moved), 0.1), beta))
     return by_arrows(moved, w), moved[walking_along(w, u)]
 
 
-# fmt: off
 RIGHT = [
-    ("P1.1", lambda state0, n: [list(state0) for _ in range(n)]),
     ("P1.1", lambda state0, n: np.repeat(state0[None], n, axis=0)),
-    ("P1.1", lambda state0, n: np.ones((n, 1)) * state0),
-    ("P1.2", by_rotation_matrices), ("P1.2", by_complex_numbers), ("P1.2", with_wrapped_yaw),
-    ("P1.3", by_loops), ("P1.3", by_nansum), ("P1.3", lambda *given: by_nansum(*given).astype(np.float32)),
-    ("P1.4", weights_by_loops), ("P1.4", lambda *given: np.array(weights_by_loops(*given), np.float32)),
-    ("P1.5", by_arrows), ("P1.5", lambda *given: np.array(by_arrows(*given), np.float32)),
-    ("P1.6", walking_along), ("P1.6", by_counting), ("P1.6", without_the_weightless),
-    ("P1.7", one_round), ("P1.7", lambda *given: list(one_round(*given))),
+    ("P1.2", by_rotation_matrices),
+    ("P1.2", by_complex_numbers),
+    ("P1.2", with_wrapped_yaw),
+    ("P1.3", by_loops),
+    ("P1.4", weights_by_loops),
+    ("P1.5", by_arrows),
+    ("P1.6", walking_along),
+    ("P1.7", one_round),
 ]

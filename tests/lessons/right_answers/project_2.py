@@ -16,11 +16,6 @@ def angles_by_direction(box, width):
     return [np.array([math.atan2(y, x) if abs(math.atan2(y, x) - PI) > 1e-12 else -PI]), np.array([math.asin(z)])]
 
 
-def angles_of_a_wrapped_column(box, width):
-    u = (box[0] + box[2]) / 2
-    return PI - 2 * PI * (u - width if u >= width else u) / width, PI / 2 - PI * (box[1] + box[3]) / width
-
-
 def greedy_by_sorting(cost, limit=100):
     """Take all pairs in the order of their cost, each if both are still free."""
     found = [-1] * len(cost)
@@ -46,12 +41,6 @@ def places_by_loop(upper, lower, baseline):
     return np.array(rows).reshape(-1, 2)
 
 
-def places_by_complex_numbers(upper, lower, baseline):
-    gone = lower[:, 1] - upper[:, 1] <= 1e-3
-    z = baseline / np.where(gone, np.nan, np.tan(lower[:, 1]) - np.tan(upper[:, 1])) * np.exp(1j * upper[:, 0])
-    return np.stack([z.real, z.imag], axis=1)
-
-
 def penalties_by_loops(labels, places, hues, saturations, map_labels, map_places, map_hues, map_saturations):
     near, far = np.mean(places, axis=0), np.mean(map_places, axis=0)
     table = [[0.0] * len(map_labels) for _ in labels]
@@ -63,23 +52,6 @@ def penalties_by_loops(labels, places, hues, saturations, map_labels, map_places
     return table
 
 
-def penalties_by_phases(labels, places, hues, saturations, map_labels, map_places, map_hues, map_saturations):
-    a, b = (np.exp(1j * np.radians(h)) for h in (hues, map_hues))
-    turn = np.nan_to_num(np.abs(np.degrees(np.angle(a[:, None] * b.conj()))))
-    c, m = (np.hypot(*(p - p.mean(axis=0)).T) for p in (places, map_places))
-    table = turn / 360 + np.abs(saturations[:, None] - map_saturations) / 100
-    return table + np.abs(c[:, None] - m) / np.clip(m, 0.1, None) + np.where(labels[:, None] == map_labels, 0, 100)
-
-
-def greedy_that_stops_at_100(cost):
-    """No pair of 100 or more is used, so one may stop there: what is left would all be left out."""
-    cost, found = cost.copy(), np.full(len(cost), -1)
-    while cost.min() < 100:
-        i, j = np.unravel_index(cost.argmin(), cost.shape)
-        found[i], cost[i], cost[:, j] = j, 1e9, 1e9
-    return found
-
-
 def fit_by_complex_numbers(places, landmarks):
     if len(places) < 2 or np.ptp(places, axis=0).max() < 1e-3 or np.ptp(landmarks, axis=0).max() < 1e-3:
         return [math.nan] * 3
@@ -89,22 +61,11 @@ def fit_by_complex_numbers(places, landmarks):
     return [t.real, t.imag, theta]
 
 
-def fit_by_svd(places, landmarks):
-    if np.isnan(fit_by_complex_numbers(places, landmarks)[0]):
-        return np.full(3, np.nan)
-    a, b = places - places.mean(axis=0), landmarks - landmarks.mean(axis=0)
-    u, _, vt = np.linalg.svd(b.T @ a)
-    r = u @ np.diag([1, np.linalg.det(u @ vt)]) @ vt
-    return np.array([*(landmarks.mean(axis=0) - r @ places.mean(axis=0)), np.arctan2(r[1, 0], r[0, 0])])
-
-
-# fmt: off
 RIGHT = [
-    ("P2.1", angles_by_direction), ("P2.1", angles_of_a_wrapped_column),
-    ("P2.1", lambda *given: np.array(angles_of_a_wrapped_column(*given), np.float32)),
-    ("P2.2", pairs_by_sorting), ("P2.2", lambda *given: np.array(pairs_by_sorting(*given), np.float32)),
-    ("P2.3", places_by_loop), ("P2.3", places_by_complex_numbers),
-    ("P2.4", penalties_by_loops), ("P2.4", penalties_by_phases),
-    ("P2.5", greedy_by_sorting), ("P2.5", greedy_that_stops_at_100),
-    ("P2.6", fit_by_complex_numbers), ("P2.6", fit_by_svd),
+    ("P2.1", angles_by_direction),
+    ("P2.2", pairs_by_sorting),
+    ("P2.3", places_by_loop),
+    ("P2.4", penalties_by_loops),
+    ("P2.5", greedy_by_sorting),
+    ("P2.6", fit_by_complex_numbers),
 ]

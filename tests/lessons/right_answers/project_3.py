@@ -5,13 +5,11 @@ import itertools
 import math
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment, minimize
+from scipy.optimize import minimize
 
 from course_lib.geometry import wrap_angle
 from course_lib.spherical_stereo import fit_rigid_2d
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d as turn
-
-PI = math.pi
 
 
 def distances_by_loops(pose, places, covariances, landmarks):
@@ -20,12 +18,6 @@ def distances_by_loops(pose, places, covariances, landmarks):
         off = r @ places[i] + pose[:2] - landmarks[j]
         table[i, j] = off @ np.linalg.solve(r @ covariances[i] @ r.T + np.diag([0.0004, 0.0004]), off)
     return table
-
-
-def distances_in_the_body_frame(pose, places, covariances, landmarks):
-    off = places[:, None] - (landmarks - pose[:2]) @ turn(pose[2])
-    weights = np.linalg.inv(covariances + 0.0004 * np.eye(2))
-    return ((off[:, :, None, :] @ weights[:, None])[:, :, 0] * off).sum(axis=-1)
 
 
 def poses_by_loops(places, labels, landmarks, map_labels, tolerance):
@@ -51,14 +43,6 @@ def poses_from_the_fit(places, labels, landmarks, map_labels, tolerance):
         if i != k and j != m and abs(lengths[0] - lengths[1]) <= tolerance and min(lengths) >= 0.5:
             found.append(fit_rigid_2d(places[[i, k]], landmarks[[j, m]]))
     return np.array(found).reshape(-1, 3)
-
-
-def assigned_with_dummies(squared, like, reward):
-    """A dummy landmark for every observation, which costs nothing."""
-    n, m = squared.shape
-    cost = np.hstack([np.where(like, squared / 2 - reward, 1e6), np.zeros((n, n))])
-    columns = linear_sum_assignment(cost)[1]
-    return [int(j) if j < m else -1 for j in columns], -cost[np.arange(n), columns].sum()
 
 
 def assigned_by_trying(squared, like, reward):
@@ -114,22 +98,12 @@ def sure_by_loop(poses, scores, nothing):
         return 1 / (1 + np.exp((second - scores[best]) / 2) + np.exp((nothing - scores[best]) / 2))
 
 
-def sure_by_softmax(poses, scores, nothing):
-    if not len(poses):
-        return np.zeros(1)
-    best = poses[np.argmax(scores)]
-    other = np.hypot(*(poses[:, :2] - best[:2]).T) > 0.5
-    other |= np.abs((poses[:, 2] - best[2] + PI) % (2 * PI) - PI) > PI / 18
-    row = np.array([scores.max(), scores[other].max() if other.any() else -np.inf, nothing])
-    share = np.exp((row - row.max()) / 2)
-    return np.array([share[0] / share.sum()])
-
-
-# fmt: off
 RIGHT = [
-    ("P3.1", distances_by_loops), ("P3.1", distances_in_the_body_frame),
-    ("P3.2", poses_by_loops), ("P3.2", poses_from_the_fit),
-    ("P3.3", assigned_with_dummies), ("P3.3", assigned_by_trying),
-    ("P3.4", refit_by_nelder_and_mead), ("P3.4", refit_by_gauss_and_newton),
-    ("P3.5", sure_by_loop), ("P3.5", sure_by_softmax),
+    ("P3.1", distances_by_loops),
+    ("P3.2", poses_by_loops),
+    ("P3.2", poses_from_the_fit),
+    ("P3.3", assigned_by_trying),
+    ("P3.4", refit_by_nelder_and_mead),
+    ("P3.4", refit_by_gauss_and_newton),
+    ("P3.5", sure_by_loop),
 ]

@@ -13,11 +13,6 @@ def by_moments(numbers, distances):
     return np.array([slope, numbers.mean() / slope - distances.mean()])
 
 
-def by_its_ends(numbers, distances):
-    slope = np.ptp(numbers) / np.ptp(distances)
-    return [slope, numbers[0] / slope - distances[0]]
-
-
 def by_a_line(ranges, distance):
     v, u = np.indices(ranges.shape)
     s = (u - (ranges.shape[1] - 1) / 2) ** 2 + (v - (ranges.shape[0] - 1) / 2) ** 2
@@ -63,16 +58,10 @@ def chain_by_loops(raw, invalid, units, coefficients, pattern, focal, repeat):
 
 RIGHT = [
     ("P4.1", lambda raw: collections.Counter(np.ravel(raw).tolist()).most_common(1)[0][0]),
-    ("P4.1", lambda raw: np.bincount(raw.ravel()).argmax()),
     ("P4.2", by_moments),
-    ("P4.2", by_its_ends),
     ("P4.3", by_a_line),
     ("P4.4", by_normal_equations),
-    ("P4.4", lambda *given: np.array(by_normal_equations(*given), np.float32)),
     ("P4.5", by_loops_over_pixels),
-    ("P4.5", lambda *given: by_loops_over_pixels(*given).astype(int).tolist()),
     ("P4.6", noise_by_loops),
-    ("P4.6", lambda *given: np.array(noise_by_loops(*given), np.float32)),
     ("P4.7", chain_by_loops),
-    ("P4.7", lambda *given: chain_by_loops(*given).astype(np.float32)),
 ]
