@@ -24,11 +24,11 @@ from typing import NamedTuple
 
 import psutil
 
-from courseware.classroom.answers import AnswerFormatError, load, one_line
+from courseware.classroom.exchange import AnswerFormatError, load, one_line
 from courseware.paths import REPOSITORY
 
 PACKAGES = ("course_lib", "courseware")
-IN_CLASSROOM = ("__init__.py", "answers.py", "inside.py")
+IN_CLASSROOM = ("__init__.py", "exchange.py", "inside.py")
 """What the process in the sandbox needs of this folder."""
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/etc/ld.so.cache", "/etc/fonts", "/etc/localtime")
 SYSTEM += ("/etc/alternatives", "/sys/devices/system/cpu")

@@ -167,9 +167,9 @@ def test_nothing_runs_on_when_the_watch_fails(library, tmp_path, monkeypatch):
 FORGED = {
     "printed": "print('06.1: right.')\nreturn hidden",
     "the library patched": """
-        import courseware.lessons.kit.exercises as exercises, courseware.classroom.answers as answers
+        import courseware.lessons.kit.exercises as exercises, courseware.classroom.exchange as exchange
         exercises.right_on = exercises.same_values = lambda *given: True
-        answers.encode = lambda value, depth=0: {"kind": "right"}
+        exchange.encode = lambda value, depth=0: {"kind": "right"}
         return hidden
         """,
     "an array that equals everything": """
