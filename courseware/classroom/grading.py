@@ -22,8 +22,8 @@ from dataclasses import asdict
 from pathlib import Path
 
 from course_lib.files import atomic_write, temporary_folder
-from courseware.classroom.exchange import AnswerFormatError, one_line
 from courseware.classroom.assignment_cells import function_names, read_assignments
+from courseware.classroom.exchange import AnswerFormatError, one_line
 from courseware.classroom.judge import Judged, Settings, from_json, judge
 from courseware.classroom.results import Entry, Results, points_by_hand, what_counts
 from courseware.classroom.sandbox import SYSTEM, Limits, Sandbox, SandboxError, copy_library, require_walls

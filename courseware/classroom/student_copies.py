@@ -14,8 +14,8 @@ import nbformat
 
 from courseware.classroom.assignment_cells import Assignment, tag_of
 from courseware.classroom.model_answers import model_answers
-from courseware.commands.working_copies import clear_answers
 from courseware.paths import REPOSITORY
+from courseware.working_copies import clear_answers
 
 NOTEBOOKS = REPOSITORY / "notebooks"
 FOLDERS = ("pictures", "scenes")
