@@ -30,7 +30,7 @@ its cells are "Fn-something".
 
 A project n needs `notebooks/projects/Pn_title.ipynb` and `lessons/project_n/`. Its `exercises.py` holds the stages, as
 above, and `project.py` holds `PROJECT` (see `kit/projects.py`). tests/notebooks/test_projects.py checks the parts. The
-model solution is in `notebooks/projects/solutions/`, and the rivals' results are in data/projects/.
+model solution is in `notebooks/projects/solutions/`, and the rivals' results are in `answers/project_n.json`.
 
 Then `.venv/bin/python -m tools.refresh NN` runs the notebook and stores its outputs. The tests find all files by their
 names.

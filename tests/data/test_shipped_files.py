@@ -4,18 +4,27 @@ from pathlib import Path
 
 import pytest
 
-from courseware.lessons.project_2.rooms import SEEDS
 from courseware.simulation.data_folder import checksums, parameter_tables
 from courseware.simulation.room import data as room
 from courseware.simulation.room import finale_data as finale
 from tools import corridor_data as corridor
 
 DATA = Path(__file__).resolve().parents[2] / "data"
-PROJECTS = tuple(f"rooms_{name}.json" for name in SEEDS)
 DETECTOR = ("room_yolo.cfg", "room_yolo.names", "room_yolo.weights", "scores.json", "training.json", "training_picture")
 PRODUCTS = {"corridor": corridor.PRODUCTS, "room": room.PRODUCTS, "finale": finale.PRODUCTS}
-PRODUCTS |= {"projects": PROJECTS, "detector": DETECTOR}
-MAX_BYTES = {"corridor": 18e6, "room": 15e6, "finale": 2e6, "projects": 1e6, "detector": 10e6}
+PRODUCTS |= {
+    "projects": ("rooms_practice.json",),
+    "../courseware/answers": ("rooms_hidden.json",),
+    "detector": DETECTOR,
+}
+MAX_BYTES = {
+    "corridor": 18e6,
+    "room": 15e6,
+    "finale": 2e6,
+    "projects": 1e6,
+    "../courseware/answers": 1e6,
+    "detector": 10e6,
+}
 
 
 @pytest.mark.parametrize("name", PRODUCTS)

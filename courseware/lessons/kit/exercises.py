@@ -10,10 +10,12 @@ import copy
 import dis
 import functools
 import importlib
+import re
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
+from importlib import resources
+from importlib.resources.abc import Traversable
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -28,7 +30,6 @@ from courseware.lessons.kit.values import agree, agree_all
 # Random inputs per check. A case that one input in five has is missed in one of 200 checks only: 0.8^24 = 0.005.
 N_INPUTS = 24
 PACKAGES = {"lesson": "", "foundation": "F", "project": "P"}  # a package's kind -> the letter of its number
-ANSWERS = Path(__file__).parents[2] / "answers"
 MAX_SHOWN = 1000  # characters of a function's printed text; only the first call's text is shown
 
 
@@ -128,8 +129,13 @@ def find_exercise(number: str) -> Exercise:
 
 def lesson_numbers() -> list[str]:
     """Return the numbers ("03") of the lessons with exercises, and the names of foundations ("F1") and projects."""
-    names = [path.stem.split("_") for path in ANSWERS.glob("*_*.py")]
-    return sorted(PACKAGES[name[0]] + name[1] for name in names if len(name) == 2)
+    found = (re.fullmatch(r"([a-z]+)_(\d+)\.py", path.name) for path in answers_folder().iterdir())
+    return sorted(PACKAGES[match[1]] + match[2] for match in found if match)
+
+
+def answers_folder() -> Traversable:
+    """Return the folder `courseware/answers`, which is packed into one file in a student's copy of the course."""
+    return resources.files("courseware.answers")
 
 
 def package_name(number: str) -> str:
