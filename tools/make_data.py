@@ -39,9 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         add("--seed", **number, default=seed, help=f"default {seed}, the shipped data's")
         add("--out", **folder, help=f"where the data go; another seed needs it (default: data/{name})")
     add, work = kind("projects", "what two spherical cameras saw in the rooms of P2 and P3"), "results/project_rooms"
-    what = (
-        "where the folders projects/ and answers/ go, for practice and for the score (default: data/ and courseware/)"
-    )
+    what = "where two folders go: projects/, for practice, and answers/, for the score (default: data/, courseware/)"
     add("--out", **folder, help=what)
     what = f"where finished rooms are kept, and looked for (default: {work})"
     add("--work", **folder, default=Path(work), help=what)
