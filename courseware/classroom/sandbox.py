@@ -1,8 +1,8 @@
 """The walls around a submission: bubblewrap makes them, prlimit bounds each process, and we watch the sum.
 
-In its own namespaces a submission finds the system, Python and the course read-only, without the modules that hold
-solutions and without the hidden data. It has a folder of limited size, no network and no other process. A filter
-refuses system calls that go around the namespaces or the watch. `--trust` runs the same process without walls.
+In its own namespaces a submission finds the system, Python and the course read-only, without the folder
+`courseware/answers`. It has a folder of limited size, no network and no other process. A filter refuses system calls
+that go around the namespaces or the watch. `--trust` runs the same process without walls.
 """
 
 import compileall
@@ -28,8 +28,6 @@ from courseware.classroom.exchange import AnswerFormatError, load, one_line
 from courseware.paths import REPOSITORY
 
 PACKAGES = ("course_lib", "courseware")
-IN_CLASSROOM = ("__init__.py", "exchange.py", "inside.py")
-"""What the process in the sandbox needs of this folder."""
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/etc/ld.so.cache", "/etc/fonts", "/etc/localtime")
 SYSTEM += ("/etc/alternatives", "/sys/devices/system/cpu")
 ENVIRONMENT = {
@@ -84,15 +82,15 @@ class Run(NamedTuple):
 
 
 def copy_library(folder: Path) -> None:
-    """Copy the course's library into an empty folder, without what no student's code may read."""
+    """Copy both packages into an empty folder, without `courseware/answers`."""
 
     def left_out(place: str, names: list[str]) -> set[str]:
         here = Path(place)
-        if here.name == "__pycache__":  # bytecode would hold the solutions; Numba's files are only machine code
+        if (
+            here.name == "__pycache__"
+        ):  # old bytecode may hold a solution that was moved; Numba's files are machine code
             return {name for name in names if not name.endswith((".nbi", ".nbc"))}
-        if here.name == "classroom":
-            return set(names) - set(IN_CLASSROOM)
-        return {"commands", "answers"} if here.name == "courseware" else set()
+        return {"answers"} if here == REPOSITORY / "courseware" else set()
 
     for package in PACKAGES:
         shutil.copytree(REPOSITORY / package, folder / package, ignore=left_out)
@@ -156,9 +154,7 @@ def walls(limits: Limits, library: Path | None = None, submission: Path | None =
     if library is not None:
         for package in PACKAGES:
             command += ["--ro-bind", str(library / package), f"/course/{package}"]
-        for path in sorted([*(REPOSITORY / "data").iterdir(), *(REPOSITORY / "data" / "projects").iterdir()]):
-            if path.name not in ("rooms_hidden.json", "projects"):
-                command += ["--ro-bind", str(path), f"/course/data/{path.relative_to(REPOSITORY / 'data')}"]
+        command += ["--ro-bind", str(REPOSITORY / "data"), "/course/data"]
     if submission is not None:
         command += ["--ro-bind", str(submission), f"/handed_in/submission{submission.suffix.lower()}"]
     command += ["--ro-bind", "/dev/null", "/dev/zero"]  # zero would give memory without a file; this cannot be opened

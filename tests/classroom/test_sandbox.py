@@ -47,6 +47,24 @@ def test_every_attempt_of_the_self_test_fails_within_the_walls(library):
     assert {what: got for what, got in found.items() if got} == {}
 
 
+IMPORT_THE_LESSONS = """
+import importlib, pkgutil, sys
+sys.path.insert(0, "/course")
+import courseware.lessons
+for module in pkgutil.walk_packages(courseware.lessons.__path__, "courseware.lessons."):
+    importlib.import_module(module.name)
+    print(module.name)
+"""
+
+
+def test_every_module_of_the_lessons_can_be_imported_within_the_walls(library):
+    pipes = dict.fromkeys(("stdout", "stderr"), subprocess.PIPE) | {"text": True}
+    with sandbox.start([*sandbox.PYTHON, IMPORT_THE_LESSONS], Limits(), library, **pipes) as process:
+        out, said = process.communicate(timeout=300)
+    assert process.returncode == 0, said
+    assert {"courseware.lessons.lesson_19.stages", "courseware.lessons.project_3.tasks"} <= set(out.split())
+
+
 HARMLESS = {
     "read a file of the teacher's", "connect to this machine", "send to a named Unix socket", "see other processes",
     "send to an abstract Unix socket", "signal the grader through a file", "watch the teacher's folder",
