@@ -13,3 +13,10 @@ paths                    where the data and the lessons lie
 
 A package imports only packages below it, and all of them may import `course_lib`, which never imports this one.
 """
+
+from pathlib import Path
+
+PACKED = "answers.pyz"
+"""In a student's copy this zip archive holds `answers`, so that nobody meets a solution while opening files."""
+
+__path__.append(str(Path(__file__).with_name(PACKED)))

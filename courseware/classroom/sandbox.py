@@ -24,6 +24,7 @@ from typing import NamedTuple
 
 import psutil
 
+from courseware import PACKED
 from courseware.classroom.exchange import AnswerFormatError, load, one_line
 from courseware.paths import REPOSITORY
 
@@ -86,11 +87,9 @@ def copy_library(folder: Path) -> None:
 
     def left_out(place: str, names: list[str]) -> set[str]:
         here = Path(place)
-        if (
-            here.name == "__pycache__"
-        ):  # old bytecode may hold a solution that was moved; Numba's files are machine code
+        if here.name == "__pycache__":  # bytecode of an older version may hold solutions; Numba's is machine code
             return {name for name in names if not name.endswith((".nbi", ".nbc"))}
-        return {"answers"} if here == REPOSITORY / "courseware" else set()
+        return {"answers", PACKED} if here == REPOSITORY / "courseware" else set()
 
     for package in PACKAGES:
         shutil.copytree(REPOSITORY / package, folder / package, ignore=left_out)

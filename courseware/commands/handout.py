@@ -17,7 +17,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     told = "where the folder goes: new, empty, or a handout that is replaced as a whole (default: handout/ in the "
     add("--out", type=Path, metavar="DIR", help=told + "course's folder, which git ignores)")
     add_flag(parser, "--solved", "put the solved lessons into the teacher's folder, too: for the screen")
-    told = "add course.zip: the whole course for students, without tests, grader and history"
+    told = "add course.zip: the whole course for students, without tests, grader and history, the answers packed away"
     add_flag(parser, "--package", told)
     told = "the secret seed of the graded tests, to make the same folder again (default: drawn by the system)"
     add("--seed", type=int, help=told)
