@@ -226,7 +226,7 @@ def test_the_students_sentence_carries_no_input_out(graded):
 def test_an_answer_finds_no_reference_seed_or_other_student(graded):
     found = graded(f"""
         import gc, sys
-        names = [n for n in sys.modules if n.endswith((".exercises", ".project", ".judge")) and ".kit." not in n]
+        names = [n for n in sys.modules if n.startswith(("courseware.answers", "courseware.classroom.judge"))]
         texts = [one for one in gc.get_objects() if isinstance(one, dict) and "images_with_holes" in one]
         return None if names or texts else {SCORE}
         """)
