@@ -137,8 +137,8 @@ def require_place(out: Path) -> None:
         raise HandoutError(f"--out {out} holds something that is no handout of ours: name a new folder")
     course = out / "teacher" / "nbgrader"
     if kept := sorted({path.name for path in course.glob("*")} - MADE_FOR_NBGRADER):
-        told = f"{course} holds {', '.join(kept)}, which would be lost"
-        raise HandoutError(f"{told}: name another --out, or move them away first")
+        message = f"{course} holds {', '.join(kept)}, which would be lost"
+        raise HandoutError(f"{message}: name another --out, or move them away first")
 
 
 def is_handout(folder: Path) -> bool:

@@ -44,13 +44,13 @@ REFUSED = (
     "add_key", "request_key", "keyctl",  # the session keyring is the teacher's
     "ptrace", "process_vm_readv", "process_vm_writev", "pidfd_getfd", "userfaultfd", "bpf", "perf_event_open",
 )  # fmt: skip
-"""System calls that no answer needs. Libraries are told that the kernel has none, and take another way."""
+"""System calls that no answer needs. The filter answers "not implemented", so libraries use a fallback."""
 PYTHON = (sys.executable, "-P", "-s", "-B", "-c")
 START_SECONDS = 300.0  # until the file is read; only a fault takes so long
 LOOK_EVERY = 0.1  # seconds between two looks at memory
 MAX_LINE = 16 << 20  # bytes of one call's answer; right answers have some kilobytes
 MAX_MESSAGES = 500  # of one answer
-ORDER_SECONDS = 30.0  # of one answer, beside its own time
+ORDER_SECONDS = 30.0  # of one answer, in addition to its own time
 MIN_FREE = 0.05  # of the machine's memory: with less, what runs is stopped, whoever took it
 HOW_TO = (
     "strangers' code is kept in by bubblewrap 0.8 or newer and libseccomp. Install both (Debian, Ubuntu: apt install "
@@ -111,7 +111,7 @@ def require_walls() -> None:
 def start(
     command: list[str], limits: Limits, library: Path | None = None, submission: Path | None = None, **given: object
 ) -> subprocess.Popen:
-    """Start a command within the walls. given: what else `Popen` is told."""
+    """Start a command within the walls. given: more arguments of `Popen`."""
     program = filter_program()
     bound = ["--seccomp", str(program), "prlimit", f"--fsize={limits.folder_mb << 20}", "--nofile=256", "--core=0"]
     bound += [f"--as={4 * limits.memory_mb << 20}", f"--nproc={limits.processes}"]
