@@ -52,8 +52,6 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
 }
 COMMANDS = {name: command for group in GROUPS.values() for name, command in group.items()}
 
-NOT_HERE = "handout and grade do not work in this copy of the course: it was made for students, without the grader"
-
 # Commands of version 0.1 that are maintainers' tools now.
 TOOLS = ("sweep", "bench", "refresh", "train-detector", "score-detector")
 TOOLS += tuple(f"make-data {what}" for what in ("corridor", "room", "finale", "projects", "training-rooms"))
@@ -61,6 +59,8 @@ TOOLS += tuple(f"make-data {what}" for what in ("corridor", "room", "finale", "p
 EXIT_BAD_INPUT = 2
 EXIT_FAULT = 1
 EXIT_INTERRUPTED = 130  # 128 + SIGINT, as shells report it
+
+NOT_HERE = "handout and grade do not work in this copy of the course: it was made for students, without the grader"
 
 # argparse's words -> ours. What is not among them (another Python's words) is told as it is.
 _SAID = (
