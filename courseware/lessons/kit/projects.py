@@ -3,7 +3,7 @@
 `score("P1", function)` runs the student's function on the project's hidden seeds and prints a line for each seed. Then
 it prints the median beside the medians of the paper's method and ours, on the same seeds. For development,
 `score("P1", function, seeds=[...])` runs it on seeds that the student chooses. The stages of a project are exercises
-("P1.1") in `courseware/answers/project_1.py`. The project itself is `PROJECT` in `project_1_task.py` beside it:
+("P1.1") in `courseware/answers/project_1.py`. The project itself is `PROJECT` in `project_1_task.py` next to it:
 
     PROJECT = Project(
         name="P1", title="...", unit="m", better="lower", digits=3, function="localize",
