@@ -7,6 +7,7 @@ line is shown by `--help`. It may have `join_words(words)`, to mend what argpars
 
 import argparse
 import importlib
+import importlib.util
 import os
 import re
 import signal
@@ -59,6 +60,8 @@ EXIT_BAD_INPUT = 2
 EXIT_FAULT = 1
 EXIT_INTERRUPTED = 130  # 128 + SIGINT, as shells report it
 
+NOT_HERE = "handout and grade do not work in this copy of the course: it was made for students, without the grader"
+
 # argparse's words -> ours. What is not among them (another Python's words) is told as it is.
 _SAID = (
     (r"argument (\S+): invalid int value: (.*)", r"\1 must be a whole number; got \2"),
@@ -75,6 +78,8 @@ def usage() -> str:
     lines = ["usage: python3 course.py COMMAND [options]"]
     for group, commands in GROUPS.items():
         lines += ["", f"{group}:", *(f"  {name:<13}  {line}" for name, (_, line) in commands.items())]
+    if importlib.util.find_spec("courseware.classroom") is None:
+        lines += ["", f"{NOT_HERE}."]
     lines += ["", "Options of one command: python3 course.py COMMAND --help"]
     lines += ["Version of the course: python3 course.py --version"]
     lines += ["The first call sets up .venv: a download of about 415 MB, 1.6 GB on disk, one or a few minutes."]
@@ -217,7 +222,9 @@ def parse(program: str, module: ModuleType, words: list[str]) -> argparse.Namesp
 def report(error: Exception) -> int:
     """Print one line about `error`, and return the exit code: 2 for what the user can mend, 1 for a fault of ours."""
     code, told = EXIT_FAULT, f"{type(error).__name__}: {error} (--debug shows where)"
-    if isinstance(error, ImportError):
+    if isinstance(error, ImportError) and (error.name or "").startswith("courseware.classroom"):
+        code, told = EXIT_BAD_INPUT, f"{NOT_HERE}. Use the teacher's copy"
+    elif isinstance(error, ImportError):
         told = f"{error}. See what is missing: python3 course.py check"
     elif isinstance(error, MemoryError):
         code, told = EXIT_BAD_INPUT, f"there is not enough memory ({error}): ask for less, such as fewer particles"

@@ -12,7 +12,7 @@ from pathlib import Path
 from course_lib.files import staging_dir
 from courseware.commands.arguments import require_output_folder, require_processes, require_seed
 from courseware.commands.output import progress_bar
-from courseware.paths import data_path
+from courseware.paths import REPOSITORY, data_path
 
 DATA = Path(__file__).resolve().parents[1] / "data"
 SHIPPED = {
@@ -39,7 +39,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         add("--seed", **number, default=seed, help=f"default {seed}, the shipped data's")
         add("--out", **folder, help=f"where the data go; another seed needs it (default: data/{name})")
     add, work = kind("projects", "what two spherical cameras saw in the rooms of P2 and P3"), "results/project_rooms"
-    add("--out", **folder, help="where the data go (default: data/projects)")
+    what = "where two folders go: projects/, for practice, and answers/, for the score (default: data/, courseware/)"
+    add("--out", **folder, help=what)
     what = f"where finished rooms are kept, and looked for (default: {work})"
     add("--work", **folder, default=Path(work), help=what)
     add("--processes", **number, help="rooms made at a time (default: one for each core)")
@@ -90,19 +91,25 @@ def make_shipped(arguments: argparse.Namespace) -> int:
 
 
 def make_projects(arguments: argparse.Namespace) -> int:
-    """Make data/projects from its seeds."""
-    out = arguments.out or DATA / "projects"
+    """Make the rooms of data/projects, and those of courseware/answers for the score."""
+    practice = (arguments.out or DATA) / "projects"
+    hidden = (arguments.out or REPOSITORY / "courseware") / "answers"
     require_processes("--processes", arguments.processes)
-    require_output_folder(out)
+    for out in (practice, hidden):
+        require_output_folder(out)
     require_output_folder(arguments.work, "--work")
-    from courseware.lessons.project_2.rooms import make_project_rooms
+    from courseware.answers.project_2_task import HIDDEN_SEEDS
+    from courseware.lessons.project_2.rooms import PRACTICE_SEEDS
     from courseware.simulation.data_folder import checksums
+    from tools.project_rooms import write_rooms
 
-    with staging_dir(out) as new:
-        bar = progress_bar("rooms", "room")
-        counts = make_project_rooms(new, data_path("detector"), arguments.work, arguments.processes, bar)
-        (new / "SHA256SUMS").write_text(checksums(new, [f"rooms_{name}.json" for name in counts]))
-    print(f"wrote {' and '.join(f'{n} views ({name})' for name, n in counts.items())} to {out}")
+    how = data_path("detector"), arguments.work, arguments.processes, progress_bar("rooms", "room")
+    with staging_dir(practice) as for_students, staging_dir(hidden) as for_the_score:
+        for new, name, seeds in ((for_students, "practice", PRACTICE_SEEDS), (for_the_score, "hidden", HIDDEN_SEEDS)):
+            count = write_rooms(new / f"rooms_{name}.json", seeds, *how)
+            (new / "SHA256SUMS").write_text(checksums(new, [f"rooms_{name}.json"]))
+            print(f"{count} views ({name})")
+    print(f"written to {practice} and {hidden}")
     return 0
 
 

@@ -1,5 +1,8 @@
 """Project P2: from the boxes of two images to a pose; scored by how far the rig's poses are off in hidden rooms."""
 
+from functools import cache
+from importlib import resources
+
 import numpy as np
 
 from course_lib.beyond.look_alikes.matchers import matcher
@@ -8,7 +11,9 @@ from course_lib.spherical_stereo.panorama import StereoRig
 from courseware.answers.project_2 import angles_of, pair_boxes, rotation
 from courseware.lessons.kit.projects import AnswerError, Project, Result, Rival, Task
 from courseware.lessons.kit.values import as_numbers
-from courseware.lessons.project_2.rooms import SEEDS, Rig, room_of
+from courseware.lessons.project_2 import rooms
+
+HIDDEN_SEEDS = tuple(range(6101, 6113))  # neither tuning nor reporting uses them
 
 MAX_COST = 2.0  # metres: a pose that is farther off costs no more
 NO_ANSWER = 1.0  # metres: the cost of no answer
@@ -16,11 +21,23 @@ CORRECT = 0.5  # metres: an answer that costs no more is called correct
 MAX_GAP = 0.1  # radians between the azimuths of two boxes of one object, as the library's triangulation asks
 
 
+@cache
+def hidden_rooms() -> dict[int, rooms.ProjectRoom]:
+    """Return the rooms of the score by their seeds."""
+    text = (resources.files(__package__) / "rooms_hidden.json").read_text(encoding="utf-8")
+    return {room.seed: room for room in rooms.read_rooms(text)}
+
+
+def room_of(seed: int) -> rooms.ProjectRoom:
+    """Return a room of the score, or a practice room. Raises `ValueError` if there is none of this seed."""
+    return hidden_rooms().get(seed) or rooms.room_of(seed)
+
+
 def prepare(seed: int) -> Task:
     """Return the arguments of `locate` for every view of a room. The truth: the poses `(n, 3)`."""
     room = room_of(seed)
     calls = tuple(
-        (list(view.upper), list(view.lower), room.semantic_map, Rig(view.rig.baseline, *view.size))
+        (list(view.upper), list(view.lower), room.semantic_map, rooms.Rig(view.rig.baseline, *view.size))
         for view in room.views
     )
     return Task(calls, np.array([view.pose for view in room.views]))
@@ -72,7 +89,7 @@ PROJECT = Project(
     better="lower",
     digits=3,
     function="locate",
-    seeds=SEEDS["hidden"],
+    seeds=HIDDEN_SEEDS,
     prepare=prepare,
     measure=measure,
     rivals=(

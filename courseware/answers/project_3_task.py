@@ -7,11 +7,11 @@ import numpy as np
 from course_lib.beyond.look_alikes.matchers import associate_hungarian
 from course_lib.spherical_stereo.pose.rigid_fit import RigidFitError, fit_rigid_2d
 from course_lib.spherical_stereo.semantic_map.association import associate_greedy
+from courseware.answers.project_2_task import HIDDEN_SEEDS, room_of
 from courseware.answers.project_3 import assign, confidence, hypotheses, refit, squared_distances
 from courseware.experiments.look_alikes import MAX_ERROR_M, is_right, pose_errors
 from courseware.lessons.kit.projects import AnswerError, Project, Result, Rival, Task
-from courseware.lessons.project_2.rooms import SEEDS
-from courseware.lessons.project_3.tasks import prepare
+from courseware.lessons.project_3.tasks import task_of
 
 WRONG_POINTS = -400.0  # of a pose that is given and is not within half a metre and 10 degrees
 
@@ -20,6 +20,11 @@ COVARIANCE_FACTOR = 2.5
 TOLERANCE = 0.8  # metres by which the lengths of two matches may disagree
 REWARD, NOTHING = 6.5, 3.0  # nats of each match that fits exactly, and of each observation for "none of these poses"
 MIN_MATCHES, MIN_CONFIDENCE, KEPT = 3, 0.75, 30
+
+
+def prepare(seed: int) -> Task:
+    """Return the task of a room of the score, or of a practice room."""
+    return task_of(room_of(seed))
 
 
 def checked_pairs(answer: object, sizes: tuple[int, int]) -> list[tuple[int, int]]:
@@ -99,7 +104,7 @@ PROJECT = Project(
     better="higher",
     digits=1,
     function="match",
-    seeds=SEEDS["hidden"],
+    seeds=HIDDEN_SEEDS,
     prepare=prepare,
     measure=measure,
     rivals=(

@@ -13,7 +13,7 @@ handout            all of it into one folder, at once
 submissions        a folder of what students handed in: whose, and what is not read; the class list
 sandbox            the walls: bubblewrap around a submission, limits, and a watch on them
 inside             the process within the walls: reads the submission and runs its answers
-answers            answers as text that can be read without running anything
+exchange           answers as text that can be read without running anything
 self_test          what a hostile answer would try (`attempts.toml`), tried before every grading
 judge              one submission judged: answers compared, points, sentences
 worlds             the worlds on which a project's function is judged: other seeds, other rooms

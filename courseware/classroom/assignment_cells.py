@@ -53,8 +53,8 @@ class Assignment(NamedTuple):
         exercises = []
         for number, cells in found.items():
             if missing := {"task", "exercise", "check", "hint"} - set(cells):
-                told = f"{self.path.name}: exercise {number} has no cell tagged {', '.join(sorted(missing))}"
-                raise AssignmentError(told)
+                message = f"{self.path.name}: exercise {number} has no cell tagged {', '.join(sorted(missing))}"
+                raise AssignmentError(message)
             title = cells["task"].splitlines()[0].removeprefix(f"### {number}").split("·")[0].strip()
             parts = (cells["task"], cells["hint"], cells.get("solution", ""))
             exercises.append(ExerciseCells(number, title, *parts))

@@ -22,8 +22,8 @@ from dataclasses import asdict
 from pathlib import Path
 
 from course_lib.files import atomic_write, temporary_folder
-from courseware.classroom.answers import AnswerFormatError, one_line
 from courseware.classroom.assignment_cells import function_names, read_assignments
+from courseware.classroom.exchange import AnswerFormatError, one_line
 from courseware.classroom.judge import Judged, Settings, from_json, judge
 from courseware.classroom.results import Entry, Results, points_by_hand, what_counts
 from courseware.classroom.sandbox import SYSTEM, Limits, Sandbox, SandboxError, copy_library, require_walls
@@ -83,8 +83,8 @@ def require_unseen(*places: Path) -> None:
     for place in places:
         for seen in (*SYSTEM, sys.prefix, sys.base_prefix):
             if place.resolve().is_relative_to(Path(seen).resolve()):
-                told = f"nothing was graded: {place} lies in {seen}, which students' code can read"
-                raise SandboxError(f"{told}. Move it, for example into your home folder")
+                message = f"nothing was graded: {place} lies in {seen}, which students' code can read"
+                raise SandboxError(f"{message}. Move it, for example into your home folder")
 
 
 def _all(found: list[Submission], judged: Path, settings: Settings, jobs: int) -> Iterator[Entry]:
@@ -106,8 +106,8 @@ def _one(one: Submission, judged: Path, settings: Settings, spent: Counter[str])
     seconds = SCORE_SECONDS if settings.scores else FILE_SECONDS + FILE_ANSWERS * settings.limits.seconds
     if not path.is_file():
         if spent[one.student] > STUDENT_FILES * seconds:
-            told = f"the student's other files took {spent[one.student]:.0f} seconds"
-            return Entry(one, Judged(why=f"was not judged yet, because {told}. Grade the folder again to go on"))
+            reason = f"the student's other files took {spent[one.student]:.0f} seconds"
+            return Entry(one, Judged(why=f"was not judged yet, because {reason}. Grade the folder again to go on"))
         began = time.monotonic()
         copy = settings.library / "handed_in" / path.stem / f"submission{suffix}"  # what is judged is what was read
         copy.parent.mkdir(parents=True, exist_ok=True)

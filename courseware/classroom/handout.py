@@ -6,14 +6,15 @@ the same folder, letter by letter.
 
 import ast
 import hashlib
+import io
 import json
-import re
 import zipfile
 from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 
 from course_lib.files import staging_dir
+from courseware import PACKED
 from courseware.classroom.assignment_cells import Assignment, tag_of
 from courseware.classroom.leaks import LeakError, find_leaks, solutions, teachers_words
 from courseware.classroom.model_answers import model_solution_path
@@ -30,7 +31,8 @@ MADE_FOR_NBGRADER = {"source", "nbgrader_config.py", "README.md"}
 READMES = {".": "handout.md", "teacher": "teacher.md", "teacher/nbgrader": "nbgrader.md", "student": "student.md"}
 FOR_STUDENTS = (".gitignore", "LICENSE", "README.md", "RESULTS.md", "course.py", "course_lib", "courseware", "data")
 FOR_STUDENTS += ("results-in-detail", *(f"environment{part}.txt" for part in ("", "-bench", "-test")), "pyproject.toml")
-NOT_FOR_STUDENTS = re.compile(r"courseware/(classroom/.*|commands/(grade|handout)\.py)|.*/__pycache__/.*")
+ANSWERS, CLASSROOM = "courseware/answers", "courseware/classroom"
+"""What course.zip does not hold as it is here: the answers are packed into one file, and the classroom is left out."""
 
 
 class HandoutError(ValueError):
@@ -106,12 +108,23 @@ def write_package(path: Path, student: Path) -> None:
     course = [place for name in FOR_STUDENTS for place in (REPOSITORY / name, *(REPOSITORY / name).rglob("*"))]
     files = {one.relative_to(REPOSITORY).as_posix(): one for one in course if not one.is_symlink()}
     files |= {f"notebooks/{one.relative_to(student).as_posix()}": one for one in student.rglob("*")}
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, file in sorted(files.items()):
-            if file.is_file() and not NOT_FOR_STUDENTS.fullmatch(name):
-                info = zipfile.ZipInfo(f"course/{name}", (2026, 1, 1, 0, 0, 0))  # the same content, the same archive
-                info.external_attr, info.compress_type = file.stat().st_mode << 16, zipfile.ZIP_DEFLATED
-                archive.writestr(info, file.read_bytes())
+    files = {name: one for name, one in files.items() if one.is_file() and "__pycache__" not in one.parts}
+    answers = {name: one for name, one in files.items() if name.startswith(f"{ANSWERS}/")}
+    others = {name: one for name, one in files.items() if not name.startswith((f"{ANSWERS}/", f"{CLASSROOM}/"))}
+    packed = archive({name.removeprefix("courseware/"): (one.read_bytes(), 0o644) for name, one in answers.items()})
+    contents = {f"course/{name}": (one.read_bytes(), one.stat().st_mode) for name, one in others.items()}
+    path.write_bytes(archive(contents | {f"course/courseware/{PACKED}": (packed, 0o644)}))
+
+
+def archive(contents: dict[str, tuple[bytes, int]]) -> bytes:
+    """Return a zip file of contents and modes by their names. The same contents make the same archive."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as file:
+        for name, (content, mode) in sorted(contents.items()):
+            info = zipfile.ZipInfo(name, (2026, 1, 1, 0, 0, 0))
+            info.external_attr, info.compress_type = mode << 16, zipfile.ZIP_DEFLATED
+            file.writestr(info, content)
+    return buffer.getvalue()
 
 
 def require_place(out: Path) -> None:
@@ -124,8 +137,8 @@ def require_place(out: Path) -> None:
         raise HandoutError(f"--out {out} holds something that is no handout of ours: name a new folder")
     course = out / "teacher" / "nbgrader"
     if kept := sorted({path.name for path in course.glob("*")} - MADE_FOR_NBGRADER):
-        told = f"{course} holds {', '.join(kept)}, which would be lost"
-        raise HandoutError(f"{told}: name another --out, or move them away first")
+        message = f"{course} holds {', '.join(kept)}, which would be lost"
+        raise HandoutError(f"{message}: name another --out, or move them away first")
 
 
 def is_handout(folder: Path) -> bool:

@@ -21,7 +21,7 @@ import types
 from pathlib import Path
 from typing import BinaryIO
 
-from courseware.classroom.answers import encode
+from courseware.classroom.exchange import encode
 from courseware.lessons.kit.attempt import attempt
 from courseware.lessons.kit.exercises import MAX_SHOWN, is_stub, same_values
 from courseware.lessons.kit.forbidden import forbidden_module

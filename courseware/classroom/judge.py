@@ -15,7 +15,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from courseware.classroom.answers import AnswerFormatError, decode, one_line
+from courseware.classroom.exchange import AnswerFormatError, decode, one_line
 from courseware.classroom.points import SCORE_POINTS, earned, lesson_of, most_of, secret
 from courseware.classroom.sandbox import Limits, Run, Sandbox
 from courseware.classroom.worlds import graded_project, score_points, score_sentence

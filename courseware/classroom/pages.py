@@ -46,8 +46,8 @@ def totals(results: Results) -> Iterable[Sequence[object]]:
     lessons = results.lessons
     most = [results.most(lesson) for lesson in lessons]
     columns = [name for name in results.roster.columns if name]
-    told = [f"{lesson} (of {of})" for lesson, of in zip(lessons, most, strict=True)]
-    yield ["student", *columns, *told, f"sum (of {sum(most)})", "handed in"]
+    headings = [f"{lesson} (of {of})" for lesson, of in zip(lessons, most, strict=True)]
+    yield ["student", *columns, *headings, f"sum (of {sum(most)})", "handed in"]
     for student in results.students:
         row = results.roster.rows.get(student, {})
         points = [results.points(student, lesson) for lesson in lessons]

@@ -9,7 +9,7 @@ from courseware.lessons.kit.projects import project_names
 POINTS = {"warm-up": 2, "core": 4, "challenge": 6}
 """By the exercise's level; a half of each is a whole number."""
 SCORE_POINTS = 12
-"""Of a project's function in the graded worlds, beside its stages."""
+"""Of a project's function in the graded worlds, in addition to its stages."""
 BY_HAND = 10
 """Of a project's written part, which the teacher gives."""
 

@@ -156,8 +156,8 @@ def points_by_hand(path: Path, entries: list[Entry]) -> dict[tuple[str, str], fl
         row = {heading: text.removeprefix("'") for heading, text in row.items()}
         rows[row["student"], row["project"]] = {"points": row["points"].strip(), "remark": row["remark"]}
     if rows:
-        told = [[*key, row["points"], row["remark"]] for key, row in rows.items()]
-        atomic_write(path, table_text([["student", "project", "points", "remark"], *told]))
+        written = [[*key, row["points"], row["remark"]] for key, row in rows.items()]
+        atomic_write(path, table_text([["student", "project", "points", "remark"], *written]))
     given = {key: float(row["points"].replace(",", ".")) for key, row in rows.items() if row["points"]}
     for (student, project), points in given.items():
         if not 0 <= points <= BY_HAND:

@@ -1,8 +1,8 @@
 """The walls around a submission: bubblewrap makes them, prlimit bounds each process, and we watch the sum.
 
-In its own namespaces a submission finds the system, Python and the course read-only, without the modules that hold
-solutions and without the hidden data. It has a folder of limited size, no network and no other process. A filter
-refuses system calls that go around the namespaces or the watch. `--trust` runs the same process without walls.
+In its own namespaces a submission finds the system, Python and the course read-only, without the folder
+`courseware/answers`. It has a folder of limited size, no network and no other process. A filter refuses system calls
+that go around the namespaces or the watch. `--trust` runs the same process without walls.
 """
 
 import compileall
@@ -24,12 +24,11 @@ from typing import NamedTuple
 
 import psutil
 
-from courseware.classroom.answers import AnswerFormatError, load, one_line
+from courseware import PACKED
+from courseware.classroom.exchange import AnswerFormatError, load, one_line
 from courseware.paths import REPOSITORY
 
 PACKAGES = ("course_lib", "courseware")
-IN_CLASSROOM = ("__init__.py", "answers.py", "inside.py")
-"""What the process in the sandbox needs of this folder."""
 SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/etc/ld.so.cache", "/etc/fonts", "/etc/localtime")
 SYSTEM += ("/etc/alternatives", "/sys/devices/system/cpu")
 ENVIRONMENT = {
@@ -45,13 +44,13 @@ REFUSED = (
     "add_key", "request_key", "keyctl",  # the session keyring is the teacher's
     "ptrace", "process_vm_readv", "process_vm_writev", "pidfd_getfd", "userfaultfd", "bpf", "perf_event_open",
 )  # fmt: skip
-"""System calls that no answer needs. Libraries are told that the kernel has none, and take another way."""
+"""System calls that no answer needs. The filter answers "not implemented", so libraries use a fallback."""
 PYTHON = (sys.executable, "-P", "-s", "-B", "-c")
 START_SECONDS = 300.0  # until the file is read; only a fault takes so long
 LOOK_EVERY = 0.1  # seconds between two looks at memory
 MAX_LINE = 16 << 20  # bytes of one call's answer; right answers have some kilobytes
 MAX_MESSAGES = 500  # of one answer
-ORDER_SECONDS = 30.0  # of one answer, beside its own time
+ORDER_SECONDS = 30.0  # of one answer, in addition to its own time
 MIN_FREE = 0.05  # of the machine's memory: with less, what runs is stopped, whoever took it
 HOW_TO = (
     "strangers' code is kept in by bubblewrap 0.8 or newer and libseccomp. Install both (Debian, Ubuntu: apt install "
@@ -84,15 +83,13 @@ class Run(NamedTuple):
 
 
 def copy_library(folder: Path) -> None:
-    """Copy the course's library into an empty folder, without what no student's code may read."""
+    """Copy both packages into an empty folder, without `courseware/answers`."""
 
     def left_out(place: str, names: list[str]) -> set[str]:
         here = Path(place)
-        if here.name == "__pycache__":  # bytecode would hold the solutions; Numba's files are only machine code
+        if here.name == "__pycache__":  # bytecode of an older version may hold solutions; Numba's is machine code
             return {name for name in names if not name.endswith((".nbi", ".nbc"))}
-        if here.name == "classroom":
-            return set(names) - set(IN_CLASSROOM)
-        return {"commands", "answers"} if here.name == "courseware" else set()
+        return {"answers", PACKED} if here == REPOSITORY / "courseware" else set()
 
     for package in PACKAGES:
         shutil.copytree(REPOSITORY / package, folder / package, ignore=left_out)
@@ -114,7 +111,7 @@ def require_walls() -> None:
 def start(
     command: list[str], limits: Limits, library: Path | None = None, submission: Path | None = None, **given: object
 ) -> subprocess.Popen:
-    """Start a command within the walls. given: what else `Popen` is told."""
+    """Start a command within the walls. given: more arguments of `Popen`."""
     program = filter_program()
     bound = ["--seccomp", str(program), "prlimit", f"--fsize={limits.folder_mb << 20}", "--nofile=256", "--core=0"]
     bound += [f"--as={4 * limits.memory_mb << 20}", f"--nproc={limits.processes}"]
@@ -156,9 +153,7 @@ def walls(limits: Limits, library: Path | None = None, submission: Path | None =
     if library is not None:
         for package in PACKAGES:
             command += ["--ro-bind", str(library / package), f"/course/{package}"]
-        for path in sorted([*(REPOSITORY / "data").iterdir(), *(REPOSITORY / "data" / "projects").iterdir()]):
-            if path.name not in ("rooms_hidden.json", "projects"):
-                command += ["--ro-bind", str(path), f"/course/data/{path.relative_to(REPOSITORY / 'data')}"]
+        command += ["--ro-bind", str(REPOSITORY / "data"), "/course/data"]
     if submission is not None:
         command += ["--ro-bind", str(submission), f"/handed_in/submission{submission.suffix.lower()}"]
     command += ["--ro-bind", "/dev/null", "/dev/zero"]  # zero would give memory without a file; this cannot be opened

@@ -14,8 +14,8 @@ import nbformat
 
 from courseware.classroom.assignment_cells import Assignment, tag_of
 from courseware.classroom.model_answers import model_answers
-from courseware.commands.working_copies import clear_answers
 from courseware.paths import REPOSITORY
+from courseware.working_copies import clear_answers
 
 NOTEBOOKS = REPOSITORY / "notebooks"
 FOLDERS = ("pictures", "scenes")
@@ -66,7 +66,7 @@ def solved_notebook(assignment: Assignment, resolve: Resolve | None = None, cana
 
 
 def student_text(text: str, resolve: Resolve | None = None) -> str:
-    """Return Markdown without what is said of solutions, its links as `resolve` says."""
+    """Return Markdown without the parts about solutions. `resolve` says where its links lead."""
 
     def one(match: re.Match) -> str:
         words, target = match.groups()

@@ -169,15 +169,15 @@ def read_roster(path: Path) -> Roster:
         raise SubmissionError(f"{path} has no column that names students: call one of them {', '.join(NAMES)}")
     by_key, keys = {}, {}
     for row in rows:
-        told = [f"{row[first]} {row[last]}"] if first and last else []
-        told += [row[column] for column in columns if row[column].strip()]
-        for name in told:
-            by_key.setdefault(told[0], row)
+        names = [f"{row[first]} {row[last]}"] if first and last else []
+        names += [row[column] for column in columns if row[column].strip()]
+        for name in names:
+            by_key.setdefault(names[0], row)
             forms = [name, name.partition("@")[0], re.sub(r"\W", "", name)]
             forms += ["".join(reversed(name.split(maxsplit=1)))] if " " in name else []
             forms += re.findall(r"(\d+)\D*$", name) if "participant" in name.casefold() else []
             for form in forms:
-                keys.setdefault(plain(form), told[0])
+                keys.setdefault(plain(form), names[0])
     return Roster(headings, by_key, keys)
 
 

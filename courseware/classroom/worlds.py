@@ -35,7 +35,7 @@ ROOMS = {"P2": "boxes", "P3": "observations"}
 
 
 def graded_project(name: str, seed: int) -> Project:
-    """The project with the worlds of a secret seed in place of its hidden ones."""
+    """Return the project with the worlds of a secret seed in place of its hidden ones."""
     project = find_project(name)
     if name in ROOMS:
         return dataclasses.replace(
@@ -44,23 +44,23 @@ def graded_project(name: str, seed: int) -> Project:
 
     def prepare(world: int) -> Task:
         task = project.prepare(world)
-        # The task's own generator would tell the world's seed, and so the truth.
+        # From the task's own generator a function could read the world's seed, and so compute the truth.
         other = np.random.default_rng(secret(seed, f"rng of {world}"))
         given = (other if isinstance(one, np.random.Generator) else one for one in task.arguments)
         return task._replace(arguments=tuple(given))
 
-    # So many seeds that nobody finds a world's by trying what they make.
+    # There are too many seeds to find a world's seed by trial.
     seeds = tuple(np.random.default_rng(seed).integers(1 << 62, (1 << 63) - 1, WORLDS).tolist())
     return dataclasses.replace(project, seeds=seeds, prepare=prepare)
 
 
 def paper_value(project: Project) -> float:
-    """The median that the paper's method reaches on the hidden seeds."""
+    """Return the median that the paper's method reaches on the hidden seeds."""
     return float(np.median(stored_rivals(find_project(project.name))["paper"][1]))
 
 
 def score_points(project: Project, values: Sequence[float]) -> float:
-    """Points of a project's function that reached these values."""
+    """Return the points of a project's function that reached these values."""
     middle = float(np.median(values))
     for line, share in ((LINES[project.name][0], 1), (paper_value(project), 2)):
         if np.isfinite(middle) and is_better(project, middle, line):
@@ -69,7 +69,7 @@ def score_points(project: Project, values: Sequence[float]) -> float:
 
 
 def score_sentence(project: Project, values: Sequence[float], failed: int) -> str:
-    """What the feedback of a project's score says: its median, how many worlds it failed in, and the line."""
+    """Return the feedback on a project's score: its median, the number of worlds in which it failed, and the lines."""
     lost = f"; it failed in {failed} of {len(values)} worlds" if failed else ""
     middle = float(np.median(values))
     reached = f"median {project.told(middle)}" if np.isfinite(middle) else "no median"
@@ -78,9 +78,9 @@ def score_sentence(project: Project, values: Sequence[float], failed: int) -> st
 
 
 def moved(task: Task, seen: Literal["boxes", "observations"], rng: np.random.Generator) -> Task:
-    """The calls of one room, on a map that is turned and shifted, by a rig that is turned otherwise in every view.
+    """Turn and shift a room's map, and turn the rig in each view by another angle. Return the calls of the room.
 
-    seen: what a call holds, boxes of two panoramas or observations in the body frame. The truth is moved with them.
+    seen: a call holds boxes of two panoramas, or observations in the body frame. The truth is moved with them.
     """
     turn, shift = rng.uniform(-np.pi, np.pi), rng.uniform(-20, 20, 2)
     there = moved_map(task.arguments[0][-2 if seen == "boxes" else -1], turn, shift)
@@ -100,7 +100,7 @@ def moved(task: Task, seen: Literal["boxes", "observations"], rng: np.random.Gen
 
 
 def moved_map(semantic_map: SemanticMap, turn: float, shift: np.ndarray) -> SemanticMap:
-    """The map turned by `turn` about the origin, then shifted, metres."""
+    """Return the map turned by `turn` [rad] about the origin, then shifted [m]."""
 
     def there(places: np.ndarray) -> np.ndarray:
         return places @ rotation_2d(turn).T + shift
@@ -112,13 +112,13 @@ def moved_map(semantic_map: SemanticMap, turn: float, shift: np.ndarray) -> Sema
 
 
 def rolled(detection: Detection, columns: int, width: int) -> Detection:
-    """A box on a panorama that is rolled by `columns` to the right: the rig's heading grows by 2 pi columns / width."""
+    """Roll a box by `columns` to the right, as on a panorama whose rig has turned left by 2 pi columns / width."""
     box = np.add(detection.box, [columns, 0, columns, 0])
     return dataclasses.replace(detection, box=tuple(wrapped_box(box, width).tolist()))
 
 
 def turned(observation: Observation, angle: float) -> Observation:
-    """An observation turned about the body's upward axis, its covariance too."""
+    """Turn an observation and its covariance about the body's upward axis."""
     r = rotation_2d(angle)
     x, y = (r @ (observation.x, observation.y)).tolist()
     return observation._replace(x=x, y=y, covariance=r @ observation.covariance @ r.T)

@@ -12,25 +12,25 @@ from courseware.commands.output import progress_bar
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    told = "what the students handed in: a folder for each student, files as alice_06.ipynb, or an LMS's download"
-    add("folder", type=Path, metavar="FOLDER", help=told)
-    told = "where the results go (default: FOLDER with -grades after its name); a second run looks only at what changed"
-    add("--out", type=Path, metavar="DIR", help=told)
-    told = "the class list, as your LMS exports it: who is missing, and its columns come back beside the points"
-    add("--roster", type=Path, metavar="CSV", help=told)
-    told = "what you set, such as 06 07 P1; the rest is not graded (default: what more than one student handed in)"
-    add("--lessons", nargs="+", default=[], metavar="NN", help=told)
-    told = "draws the hidden inputs; keep it to yourself (default: that of DIR, else a new one)"
-    add("--seed", type=int, help=told)
+    text = "what the students handed in: a folder for each student, files as alice_06.ipynb, or an LMS's download"
+    add("folder", type=Path, metavar="FOLDER", help=text)
+    text = "where the results go (default: FOLDER with -grades after its name); a second run looks only at what changed"
+    add("--out", type=Path, metavar="DIR", help=text)
+    text = "the class list, as your LMS exports it: who is missing, and its columns come back beside the points"
+    add("--roster", type=Path, metavar="CSV", help=text)
+    text = "what you set, such as 06 07 P1; the rest is not graded (default: what more than one student handed in)"
+    add("--lessons", nargs="+", default=[], metavar="NN", help=text)
+    text = "draws the hidden inputs; keep it to yourself (default: that of DIR, else a new one)"
+    add("--seed", type=int, help=text)
     options.add_number(parser, "--jobs", "submissions at a time (default: one a processor)")
-    told = (
+    text = (
         "all calls of one answer; one call has a third of it, a whole file four times that and a minute (default: 60)"
     )
-    add("--seconds", type=float, default=60.0, metavar="S", help=told)
+    add("--seconds", type=float, default=60.0, metavar="S", help=text)
     add("--memory", type=int, default=1500, metavar="MB", help="memory of one submission (default: %(default)d)")
     options.add_flag(parser, "--scores", "also run the projects' last functions: minutes for each submission")
-    told = "grade without walls, with your rights: only if you have read every file"
-    options.add_flag(parser, "--trust", told)
+    text = "grade without walls, with your rights: only if you have read every file"
+    options.add_flag(parser, "--trust", text)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -14,13 +14,13 @@ from courseware.commands.output import progress_bar
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("lessons", nargs="*", metavar="NN", help="lessons and projects, such as 03, F1 or P1 (default: all)")
-    told = "where the folder goes: new, empty, or a handout that is replaced as a whole (default: handout/ in the "
-    add("--out", type=Path, metavar="DIR", help=told + "course's folder, which git ignores)")
+    text = "where the folder goes: new, empty, or a handout that is replaced as a whole (default: handout/ in the "
+    add("--out", type=Path, metavar="DIR", help=text + "course's folder, which git ignores)")
     add_flag(parser, "--solved", "put the solved lessons into the teacher's folder, too: for the screen")
-    told = "add course.zip: the whole course for students, without tests, grader and history"
-    add_flag(parser, "--package", told)
-    told = "the secret seed of the graded tests, to make the same folder again (default: drawn by the system)"
-    add("--seed", type=int, help=told)
+    text = "add course.zip: the whole course for students, without tests, grader and history, the answers packed away"
+    add_flag(parser, "--package", text)
+    text = "the secret seed of the graded tests, to make the same folder again (default: drawn by the system)"
+    add("--seed", type=int, help=text)
 
 
 def run(arguments: argparse.Namespace) -> int:

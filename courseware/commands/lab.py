@@ -1,7 +1,7 @@
 """Open the lessons in JupyterLab, on this computer only.
 
-The student's own copies open, from `work/` (working_copies.py). The server listens on 127.0.0.1 with its token on. Its
-settings live in `.venv/course-lab`, so that nothing in the user's home is read or changed.
+The student's own copies open, from `work/` (`courseware.working_copies`). The server listens on 127.0.0.1 with its
+token on. Its settings live in `.venv/course-lab`, so that nothing in the user's home is read or changed.
 """
 
 import argparse
@@ -14,8 +14,8 @@ from pathlib import Path
 
 from course_lib.files import atomic_write
 from courseware.commands.saved_panels import HOOK
-from courseware.commands.working_copies import NOTEBOOKS, WORK, copy_of, lessons, make_copies
 from courseware.paths import REPOSITORY
+from courseware.working_copies import NOTEBOOKS, WORK, copy_of, lessons, make_copies
 
 EXTENSION = Path(__file__).with_name("lab_extension")
 FIRST_LESSON = "work/00_start_here.ipynb"

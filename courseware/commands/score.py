@@ -7,10 +7,10 @@ import sys
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("project", metavar="P1", help="which project")
-    told = "a Python file, or a notebook, that defines the project's function"
-    parser.add_argument("file", metavar="FILE", help=told)
-    told = "score on these seeds, such as 10001, not the hidden ones"
-    parser.add_argument("--seeds", nargs="+", metavar="N", help=told)
+    text = "a Python file, or a notebook, that defines the project's function"
+    parser.add_argument("file", metavar="FILE", help=text)
+    text = "score on these seeds, such as 10001, not the hidden ones"
+    parser.add_argument("--seeds", nargs="+", metavar="N", help=text)
 
 
 def run(arguments: argparse.Namespace) -> int:

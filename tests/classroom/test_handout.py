@@ -8,10 +8,11 @@ import zipfile
 
 import pytest
 
+from courseware import PACKED
 from courseware.classroom import handout
 from courseware.classroom.assignment_cells import read_assignments
 from courseware.classroom.handout import MARKER, HandoutError, canary_of, make_handout
-from courseware.classroom.leaks import LeakError, find_leaks, teachers_words
+from courseware.classroom.leaks import LeakError, find_leaks, solutions, teachers_words
 from courseware.lessons.kit.exercises import find_exercise
 
 SEED = 31_415_926_535
@@ -78,18 +79,61 @@ def test_the_rubric_has_every_exercise_with_its_points_and_mistakes(made):
     assert "better than the paper's method (0.309 m on the hidden seeds)" in project
 
 
-def test_the_package_for_students_works_and_holds_nothing_of_the_teachers(made, tmp_path):
+@pytest.fixture(scope="module")
+def course(made, tmp_path_factory):
+    """The course for students, unpacked."""
+    folder = tmp_path_factory.mktemp("unpacked")
     with zipfile.ZipFile(made / "course.zip") as archive:
-        archive.extractall(tmp_path)
-    course = tmp_path / "course"
+        archive.extractall(folder)
+    return folder / "course"
+
+
+def test_the_package_for_students_holds_nothing_of_the_teachers_and_no_solution_that_can_be_read(course):
     names = {str(path.relative_to(course)) for path in course.rglob("*")}
-    there = {"course.py", "courseware/answers/lesson_06.py", "notebooks/06_likelihood_and_weights.ipynb"}
-    assert there <= names
+    assert {"course.py", f"courseware/{PACKED}", "notebooks/06_likelihood_and_weights.ipynb"} <= names
     gone = {"tests", "tools", ".git", ".ci", "courseware/classroom", "notebooks/projects/solutions", "TEACHING.md"}
-    assert not gone & names
-    ran = [subprocess.run([sys.executable, "-m", "courseware", word], cwd=course, capture_output=True, check=False)
-           for word in ("--help", "grade")]  # fmt: skip
-    assert [one.returncode for one in ran] == [0, 1]
+    assert not (gone | {"courseware/answers"}) & names
+    assert find_leaks(course / "courseware", solutions(read_assignments())) == []
+    assert not list(course.rglob("rooms_hidden*"))
+
+
+ONLY_THIS_COPY = """
+import sys
+sys.path[:0] = "."
+sys.meta_path[:] = [one for one in sys.meta_path if not getattr(one, "__module__", "").startswith("__editable__")]
+"""
+CHECKED = """
+from courseware.lessons import check
+from courseware.lessons.kit.projects import find_project, project_names, stored_rivals
+def raw_score(hidden, alpha):
+    return (1 - hidden) * alpha / (alpha + 0.02) + hidden * alpha / (alpha + 2)
+check("06.1", raw_score)
+check("06.1", lambda hidden, alpha: raw_score(hidden, alpha) - hidden * alpha / (alpha + 2))
+for project in map(find_project, project_names()):
+    print(project.name, *stored_rivals(project), len(project.prepare(project.seeds[0]).truth))
+"""
+
+
+def in_the_copy(course, code: str) -> subprocess.CompletedProcess:
+    """Run code with the packages of the unpacked course alone, not those that are installed."""
+    command = [sys.executable, "-c", ONLY_THIS_COPY + code]
+    return subprocess.run(command, cwd=course, capture_output=True, text=True, check=False)
+
+
+def test_checks_and_projects_of_the_package_work_and_know_the_mistakes(course):
+    done = in_the_copy(course, CHECKED)
+    hint = "You leave the hidden pixels out. They were measured, so each of them counts its small term."
+    projects = ["P1 paper ours 2", "P2 paper ours 8", "P3 paper other ours 24", "P4 none paper ours 2"]
+    assert done.stdout.splitlines() == ["06.1: right.", f"06.1: not yet. {hint}", *projects], done.stderr
+
+
+def test_the_package_says_that_it_does_not_grade(course):
+    helped, graded = (in_the_copy(course, f"from courseware.cli import main; sys.exit(main({words}))")
+                      for words in (["--help"], ["grade", "."]))  # fmt: skip
+    told = "handout and grade do not work in this copy of the course: it was made for students, without the grader"
+    assert (helped.returncode, graded.returncode) == (0, 2)
+    assert told in helped.stdout
+    assert told in graded.stderr
 
 
 def test_a_place_that_holds_something_else_is_refused_and_left_alone(tmp_path):

@@ -35,6 +35,15 @@ def test_answers_that_take_functions_or_the_lessons_own_objects_run(judged, name
     assert {one.status for one in judged(solved(name), name).answers} == {"right"}
 
 
+def test_an_answer_may_use_the_practice_rooms_and_their_tasks(judged):
+    answers = solved("P3")
+    imports = (f"from courseware.lessons.project_{n} import {name}" for n, name in ((2, "rooms"), (3, "tasks")))
+    used = "assert len(tasks.prepare(10_601).truth) == 3 * len(rooms.rooms_of('practice')[0].views)"
+    answers["P3.1"] = "\n".join([*imports, answers["P3.1"].replace("    r = ", f"    {used}\n    r = ")])
+    assert used in answers["P3.1"]
+    assert {one.status for one in judged(answers, "P3").answers} == {"right"}
+
+
 def test_an_honest_notebook_of_an_odd_form_has_all_points(judged):
     """Its answer begins with %%time, and a top-level call changes what another answer needs."""
     answers = solved("06")

@@ -47,6 +47,24 @@ def test_every_attempt_of_the_self_test_fails_within_the_walls(library):
     assert {what: got for what, got in found.items() if got} == {}
 
 
+IMPORT_THE_LESSONS = """
+import importlib, pkgutil, sys
+sys.path.insert(0, "/course")
+import courseware.lessons
+for module in pkgutil.walk_packages(courseware.lessons.__path__, "courseware.lessons."):
+    importlib.import_module(module.name)
+    print(module.name)
+"""
+
+
+def test_every_module_of_the_lessons_can_be_imported_within_the_walls(library):
+    pipes = dict.fromkeys(("stdout", "stderr"), subprocess.PIPE) | {"text": True}
+    with sandbox.start([*sandbox.PYTHON, IMPORT_THE_LESSONS], Limits(), library, **pipes) as process:
+        out, said = process.communicate(timeout=300)
+    assert process.returncode == 0, said
+    assert {"courseware.lessons.lesson_19.stages", "courseware.lessons.project_3.tasks"} <= set(out.split())
+
+
 HARMLESS = {
     "read a file of the teacher's", "connect to this machine", "send to a named Unix socket", "see other processes",
     "send to an abstract Unix socket", "signal the grader through a file", "watch the teacher's folder",
@@ -167,9 +185,9 @@ def test_nothing_runs_on_when_the_watch_fails(library, tmp_path, monkeypatch):
 FORGED = {
     "printed": "print('06.1: right.')\nreturn hidden",
     "the library patched": """
-        import courseware.lessons.kit.exercises as exercises, courseware.classroom.answers as answers
+        import courseware.lessons.kit.exercises as exercises, courseware.classroom.exchange as exchange
         exercises.right_on = exercises.same_values = lambda *given: True
-        answers.encode = lambda value, depth=0: {"kind": "right"}
+        exchange.encode = lambda value, depth=0: {"kind": "right"}
         return hidden
         """,
     "an array that equals everything": """
@@ -208,7 +226,7 @@ def test_the_students_sentence_carries_no_input_out(graded):
 def test_an_answer_finds_no_reference_seed_or_other_student(graded):
     found = graded(f"""
         import gc, sys
-        names = [n for n in sys.modules if n.endswith((".exercises", ".project", ".judge")) and ".kit." not in n]
+        names = [n for n in sys.modules if n.startswith(("courseware.answers", "courseware.classroom.judge"))]
         texts = [one for one in gc.get_objects() if isinstance(one, dict) and "images_with_holes" in one]
         return None if names or texts else {SCORE}
         """)

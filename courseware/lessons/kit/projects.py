@@ -13,11 +13,12 @@ it prints the median beside the medians of the paper's method and ours, on the s
         rivals=(Rival("paper", "the paper's own method", f), Rival("ours", "ours", g)),
     )
 
-`python -m courseware.lessons.kit.score P1 --store` stores the rivals' results in data/projects/P1.json.
+`python -m courseware.lessons.kit.score P1 --store` stores the rivals' results in `courseware/answers/project_1.json`.
 """
 
 import importlib
 import json
+import re
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -29,11 +30,11 @@ import numpy as np
 from courseware.experiments.intervals import median_interval
 from courseware.experiments.results import write_results
 from courseware.lessons.kit.attempt import Attempt, attempt
-from courseware.lessons.kit.exercises import ANSWERS, is_stub, show_printed
+from courseware.lessons.kit.exercises import answers_folder, is_stub, show_printed
 from courseware.lessons.kit.forbidden import forbidden_module
 from courseware.lessons.kit.hints import kind_of
 from courseware.lessons.kit.progress_bar import progress
-from courseware.paths import REPOSITORY, data_path
+from courseware.paths import REPOSITORY
 
 
 class Task(NamedTuple):
@@ -123,7 +124,8 @@ def find_project(name: str) -> Project:
 
 def project_names() -> list[str]:
     """Return the names ("P1") of the projects."""
-    return sorted(f"P{path.stem.split('_')[1]}" for path in ANSWERS.glob("project_[0-9]_task.py"))
+    found = (re.fullmatch(r"project_(\d)_task\.py", path.name) for path in answers_folder().iterdir())
+    return sorted(f"P{match[1]}" for match in found if match)
 
 
 def score(name: str, function: Callable, seeds: Sequence[int] | None = None, rivals: bool = True) -> None:
@@ -250,20 +252,26 @@ def _to_beat(project: Project, mine: float, others: dict[str, float]) -> str:
 # The rivals' results on the hidden seeds are computed once and stored. A test computes them again and compares.
 
 
+def rivals_file(project: Project) -> str:
+    """Return the name of the file with the rivals' results: project_1.json for P1."""
+    return f"project_{project.name[1:]}.json"
+
+
 def stored_rivals(project: Project) -> dict[str, tuple[str, list[float]]]:
     """Return key -> (name, values on the hidden seeds) of the rivals. Raises `ValueError` if the file is outdated."""
-    stored = json.loads(data_path(f"projects/{project.name}.json").read_text(encoding="utf-8"))
+    path = answers_folder() / rivals_file(project)
+    stored = json.loads(path.read_text(encoding="utf-8"))
     keys = [rival.key for rival in project.rivals]
     if stored["seeds"] != list(project.seeds) or list(stored["rivals"]) != keys:
         raise ValueError(
-            f"data/projects/{project.name}.json holds other seeds or rivals: run "
+            f"{path} holds other seeds or rivals: run "
             f"`python -m courseware.lessons.kit.score {project.name} --store` again"
         )
     return {key: (rival["name"], rival["values"]) for key, rival in stored["rivals"].items()}
 
 
 def store_rivals(project: Project) -> Path:
-    """Run the rivals on the hidden seeds, write their results to data/projects/, and return the path."""
+    """Run the rivals on the hidden seeds, write their results into courseware/answers, and return the path."""
     rivals = {}
     for rival in project.rivals:
         found = outcomes(project, rival.function, project.seeds, rival.name)
@@ -274,7 +282,7 @@ def store_rivals(project: Project) -> Path:
             "values": [round(outcome.value, project.digits + 3) for outcome in found],
             "remarks": [outcome.remark for outcome in found],
         }
-    path = REPOSITORY / "data" / "projects" / f"{project.name}.json"
+    path = REPOSITORY / "courseware" / "answers" / rivals_file(project)
     units = {"title": project.title, "unit": project.unit, "better": project.better}
     write_results(path, {"project": project.name, **units, "seeds": list(project.seeds), "rivals": rivals})
     return path

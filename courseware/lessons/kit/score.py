@@ -2,7 +2,7 @@
 
     python -m courseware.lessons.kit.score P1 FILE        scores the function in FILE, a Python file or a notebook
                                                           (`course.py score P1 FILE`)
-    python -m courseware.lessons.kit.score P1 --store     writes data/projects/P1.json again
+    python -m courseware.lessons.kit.score P1 --store     writes courseware/answers/project_1.json again
 
 Only what the function needs runs (`kit.statements`); checks, figures and scores do not.
 """

@@ -80,7 +80,7 @@ def test_a_file_of_hints_has_one_heading_for_each_exercise_and_the_mistakes_stan
 
 
 def test_hints_of_an_exercise_that_there_is_not_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(exercises, "ANSWERS", tmp_path)
+    monkeypatch.setattr(exercises, "answers_folder", lambda: tmp_path)
     (tmp_path / "lesson_06.py").touch()
     (tmp_path / "lesson_06.hints").write_text("[06.77]\nold => new\nA hint.\n")
     with pytest.raises(EditError, match=r"lesson_06\.hints: there is no exercise 06\.77"):

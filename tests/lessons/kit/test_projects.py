@@ -40,9 +40,9 @@ MANY = dataclasses.replace(
 @pytest.fixture
 def lines(monkeypatch, tmp_path, capsys):
     """What `score` prints of a function, for the toy project with its rivals stored."""
-    (tmp_path / "data" / "projects").mkdir(parents=True)
+    (tmp_path / "courseware" / "answers").mkdir(parents=True)
     monkeypatch.setattr(projects, "REPOSITORY", tmp_path)
-    monkeypatch.setattr(projects, "data_path", lambda relative: tmp_path / "data" / relative)
+    monkeypatch.setattr(projects, "answers_folder", lambda: tmp_path / "courseware" / "answers")
     projects.store_rivals(TOY)
 
     def printed(function, project=TOY, **options) -> list[str]:
@@ -142,7 +142,7 @@ def test_bad_seeds_and_hidden_ones_are_refused(lines, seeds):
 @pytest.mark.parametrize("change", [{"seeds": [1, 2]}, {"rivals": {}}])
 def test_stored_numbers_of_other_seeds_or_rivals_are_refused(lines, tmp_path, change):
     assert projects.stored_rivals(TOY)["ours"] == ("ours", pytest.approx([0.2] * 6))
-    path = tmp_path / "data" / "projects" / "P0.json"
+    path = tmp_path / "courseware" / "answers" / "project_0.json"
     path.write_text(json.dumps(json.loads(path.read_text()) | change))
     with pytest.raises(ValueError, match="other seeds"):
         projects.stored_rivals(TOY)

@@ -56,7 +56,7 @@ def copy_of(notebook: str, root: Path) -> str:
 def make_copies(root: Path, fresh: Sequence[str] = (), today: datetime.date | None = None) -> list[str]:
     """Bring `work/` up to date, and return what the student should know, a sentence each.
 
-    fresh: numbers of lessons to begin anew; an old copy is renamed, `06_title.before-2026-11-23.ipynb`.
+    fresh: numbers of lessons that start again; an old copy is renamed, `06_title.before-2026-11-23.ipynb`.
     """
     work, numbers, again = root / WORK, lessons(root), {as_number(word) for word in fresh}
     if unknown := sorted(again - set(numbers)):
@@ -135,7 +135,7 @@ def _checksum(content: bytes) -> str:
 
 
 def _text_version(content: bytes) -> str:
-    """Checksum of a notebook's cells without outputs: a lesson whose pictures alone were drawn anew has not changed."""
+    """Return a checksum of a notebook's cells without outputs, because new pictures alone do not change a lesson."""
     try:
         cells = [[cell["cell_type"], "".join(cell["source"])] for cell in json.loads(content)["cells"]]
     except (ValueError, KeyError, TypeError):  # it is no notebook

@@ -8,8 +8,8 @@ import subprocess
 import nbformat
 import pytest
 
-from courseware.commands.working_copies import copy_of, lessons, make_copies
 from courseware.paths import REPOSITORY
+from courseware.working_copies import copy_of, lessons, make_copies
 
 DAY = datetime.date(2026, 11, 23)
 LESSON_06 = "06_likelihood_and_weights.ipynb"

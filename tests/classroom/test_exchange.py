@@ -7,7 +7,7 @@ import struct
 import numpy as np
 import pytest
 
-from courseware.classroom.answers import AnswerFormatError, Unreadable, decode, encode, load
+from courseware.classroom.exchange import AnswerFormatError, Unreadable, decode, encode, load
 
 
 def array(header: str) -> str:
