@@ -15,13 +15,6 @@ README, GLOSSARY = ((FOLDER / name).read_text(encoding="utf-8") for name in ("RE
 ENTRIES = dict(re.findall(r"^### (.+)\n((?:.+\n?)+)", GLOSSARY, re.M))
 
 
-def minutes_of(number: str) -> int:
-    """How many minutes a lesson says that it takes."""
-    return int(
-        re.search(r"\*\*(?:About )?(\d+) minutes", numbered_paths()[number].read_text(encoding="utf-8")).group(1)
-    )
-
-
 def row_of(path) -> str:
     return next(
         (line for line in README.splitlines() if " · " in line and f"]({path.relative_to(FOLDER).as_posix()})" in line),
@@ -33,7 +26,7 @@ def row_of(path) -> str:
 def test_every_lesson_has_a_row_with_its_time_and_its_picture(path):
     number, row = path.name[:2], row_of(path)
     assert row.startswith(f"| [{number} · ")
-    assert f"({minutes_of(number)} min)" in row
+    assert f"({read(path).minutes} min)" in row
     source, alt = re.search(r'<img src="([^"]+)" width="250" alt="([^"]+)">', row).groups()
     assert len(alt.split()) >= 4
     assert re.fullmatch(rf"pictures/{number}\.(png|webp|svg)", source)
@@ -51,21 +44,20 @@ def test_a_lesson_begins_with_its_picture_which_is_of_its_stored_outputs(path, t
         assert np.less_equal(Image.open(made).size, MAX_SIZE).all()
 
 
-def test_every_link_leads_somewhere_and_the_times_of_the_paths_add_up():
-    for target in re.findall(r"\]\(([^)#]+)\)", README):
-        assert (FOLDER / target).exists(), target
+def test_the_times_of_the_paths_add_up():
     rows = re.findall(r"^\| ([a-z0-9 ]+) \| ((?:\d\d(?:, )?)+) \| (\d+) h (\d+) min \|$", README, re.M)
     assert [name for name, *_ in rows] == ["paper 1", "paper 2", "both"]
     for _, lessons, hours, minutes in rows:
-        assert sum(minutes_of(number) for number in lessons.split(", ")) == 60 * int(hours) + int(minutes)
+        assert sum(read(numbered_paths()[number]).minutes for number in lessons.split(", ")) == 60 * int(hours) + int(
+            minutes
+        )
     assert set(rows[0][1].split(", ") + rows[1][1].split(", ")) < set(rows[2][1].split(", "))
 
 
 @pytest.mark.parametrize("term", ENTRIES)
-def test_an_entry_is_short_named_as_its_anchor_and_names_a_lesson_that_exists(term):
+def test_an_entry_is_named_as_its_anchor_and_names_a_lesson_that_exists(term):
     assert len(ENTRIES) >= 50
     assert re.fullmatch(r"[a-z0-9 -]+", term)
-    assert len(ENTRIES[term].split()) <= 60
     named = {number for group in re.findall(r"Lessons? ([\dF and to,]+)\.", ENTRIES[term]) for number in group.split()}
     numbers = {word for word in named if re.fullmatch(r"[\dF]\d", word)}
     assert numbers
