@@ -1,6 +1,7 @@
-"""notebooks/README.md: every lesson with its time and its picture, paths whose times add up; and the glossary."""
+"""Every lesson has all its places, among them its time and its picture in notebooks/README.md; and the glossary."""
 
 import re
+from fnmatch import fnmatch
 
 import numpy as np
 import pytest
@@ -52,6 +53,48 @@ def test_the_times_of_the_paths_add_up():
             minutes
         )
     assert set(rows[0][1].split(", ") + rows[1][1].split(", ")) < set(rows[2][1].split(", "))
+
+
+def numbers_in(text: str) -> set[str]:
+    """The lessons that a text names: "01, 03 to 05" names four."""
+    found = re.findall(r"\b(\d\d)\b(?:\]\([^)]*\))?(?: to \[?(\d\d)\b)?", text)
+    return {f"{n:02}" for first, last in found for n in range(int(first), int(last or first) + 1)}
+
+
+@pytest.mark.parametrize("path", notebook_paths(), ids=lambda path: path.name[:2])
+def test_a_lesson_has_all_the_places_that_contributing_lists(path):
+    number, root = path.name[:2], REPOSITORY
+    readme, changes, teaching = (
+        (root / name).read_text(encoding="utf-8") for name in ("README.md", "CHANGELOG.md", "TEACHING.md")
+    )
+    globs = re.findall(r"^notebooks/\S+$", (root / "tools/site_source/contents.txt").read_text(encoding="utf-8"), re.M)
+    parts = re.findall(r"^\| (?:Start|Paper [12]|Both) \|([^|]*)\|", readme, re.M)
+    paths = re.findall(r"^\| [a-z0-9 ]+ \|([\d, ]+)\| \d+ h", README, re.M)
+    plan = teaching.partition("### Fifteen meetings")[2].partition("###")[0]
+    places = {
+        f"courseware/lessons/lesson_{number}/__init__.py": None,
+        f"courseware/answers/lesson_{number}.py": None,
+        f"tests/lessons/test_lesson_{number}.py": None,
+        f"tests/lessons/right_answers/lesson_{number}.py": None,
+        "README.md: the row of its part": number in numbers_in(" ".join(parts)),
+        "CHANGELOG.md: a line": number in numbers_in(" ".join(re.findall(r"\([^()]*\)|[Ll]essons? [^.]*", changes))),
+        "tools/site_source/contents.txt: the part of the web site": any(
+            fnmatch(f"notebooks/{path.stem}", glob) for glob in globs
+        ),
+        "notebooks/README.md: a row": bool(row_of(path)),
+        "notebooks/README.md: a path": number in numbers_in(" ".join(paths)),
+        f"notebooks/pictures/{number}.*": any((FOLDER / "pictures").glob(f"{number}.*")),
+        "TEACHING.md, section 1: the table of costs": f"\n| {number} | " in teaching.partition("## 2. Plans")[0],
+        "TEACHING.md, section 2: fifteen meetings": number in numbers_in(plan),
+        "TEACHING.md, section 3: an entry": f"\n### {number} · " in teaching,
+    }
+    before = [one for one in notebook_paths() if one.name < path.name][-1:]
+    for lesson in map(read, before):
+        places[f"{lesson.path.name}: its first cell links to the lesson"] = path.name in lesson.cells[0].source
+        places[f"{lesson.path.name}: its last cell links to the lesson"] = path.name in lesson.cells[-1].source
+        places[f"{lesson.path.name}: its **Next:** names the lesson"] = number in numbers_in(lesson.markdown.rpartition("**Next:**")[2])
+    missing = [name for name, there in places.items() if not ((root / name).exists() if there is None else there)]
+    assert not missing, "missing; CONTRIBUTING.md, 'A new lesson', says what belongs there:\n" + "\n".join(missing)
 
 
 @pytest.mark.parametrize("term", ENTRIES)
