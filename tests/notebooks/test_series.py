@@ -90,9 +90,10 @@ def test_a_lesson_has_all_the_places_that_contributing_lists(path):
     }
     before = [one for one in notebook_paths() if one.name < path.name][-1:]
     for lesson in map(read, before):
+        next_text = lesson.markdown.rpartition("**Next:**")[2]
         places[f"{lesson.path.name}: its first cell links to the lesson"] = path.name in lesson.cells[0].source
         places[f"{lesson.path.name}: its last cell links to the lesson"] = path.name in lesson.cells[-1].source
-        places[f"{lesson.path.name}: its **Next:** names the lesson"] = number in numbers_in(lesson.markdown.rpartition("**Next:**")[2])
+        places[f"{lesson.path.name}: its **Next:** names the lesson"] = number in numbers_in(next_text)
     missing = [name for name, there in places.items() if not ((root / name).exists() if there is None else there)]
     assert not missing, "missing; CONTRIBUTING.md, 'A new lesson', says what belongs there:\n" + "\n".join(missing)
 
