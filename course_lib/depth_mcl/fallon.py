@@ -30,7 +30,7 @@ DISPARITY_UNIFORM_WEIGHT = 0.999  # rho of the disparity form
 
 
 def depth_log_likelihood(measured: np.ndarray, simulated: np.ndarray) -> np.ndarray:
-    """Return the log-likelihood `(N,)` from differences of depth.
+    """Log-likelihood `(N,)` from differences of depth.
 
     sum_j log[ rho / 3 + (1 - rho) h(|z_t^j - z_(i)^j|) ],
     h(x) = 2 / (s sqrt(2 pi)) exp(-x^2 / (2 s^2)) up to 3 m, then 0
@@ -50,9 +50,7 @@ def depth_log_likelihood(measured: np.ndarray, simulated: np.ndarray) -> np.ndar
 
 
 def normalized_disparity(z: np.ndarray) -> np.ndarray:
-    """Return the normalized disparity of depths in metres: 0 at n = 0.7 m, 1 at f = 20 m.
-
-    d = f / (f - n) - f n / ((f - n) z)
+    """Normalized disparity d = f / (f - n) - f n / ((f - n) z) of depths in metres: 0 at n = 0.7 m, 1 at f = 20 m.
 
     What lies outside [n, f], a miss (`inf`) included, is held at 0 or 1, as the depth buffer of a renderer with these
     planes would hold it.
@@ -63,13 +61,13 @@ def normalized_disparity(z: np.ndarray) -> np.ndarray:
 
 
 def disparity_pixels(measured: np.ndarray) -> np.ndarray:
-    """Return which pixels of a measured image the disparity form compares: measured, and within [n, f]."""
+    """Which pixels of a measured image the disparity form compares: measured, and within [n, f]."""
     z = np.nan_to_num(np.asarray(measured, dtype=np.float64))
     return valid_pixels(measured) & (z >= DISPARITY_NEAR) & (z <= DISPARITY_FAR)
 
 
 def disparity_log_likelihood(measured: np.ndarray, simulated: np.ndarray) -> np.ndarray:
-    """Return the log-likelihood `(N,)` from differences of normalized disparity.
+    """Log-likelihood `(N,)` from differences of normalized disparity.
 
     sum_j log[ rho + (1 - rho) N(D_j; 0, s) / (Phi((1 - d_j) / s) - Phi(-d_j / s)) ]
 
@@ -91,7 +89,7 @@ def disparity_log_likelihood(measured: np.ndarray, simulated: np.ndarray) -> np.
 
 
 def weights_from_log_likelihood(log_likelihood: np.ndarray) -> np.ndarray:
-    """Return weights `(N,)` proportional to exp(log-likelihood), which sum to one. The largest is subtracted first."""
+    """Weights `(N,)` proportional to exp(log-likelihood), summing to one; the greatest is subtracted first."""
     return softmax(np.asarray(log_likelihood, dtype=np.float64))
 
 
@@ -100,7 +98,7 @@ _FORMS = {"depth": (depth_log_likelihood, valid_pixels), "disparity": (disparity
 
 
 def fallon_weighting(form: Literal["depth", "disparity"] = "depth") -> Weighting:
-    """Return the weighting "depth" or "disparity" for `MonteCarloLocalizer`. It scores by log-likelihood per pixel."""
+    """Weighting for `MonteCarloLocalizer`: "depth" or "disparity". The score is the log-likelihood a pixel."""
     if form not in _FORMS:
         raise ValueError(f"form must be 'depth' or 'disparity'; got {form!r}")
     return Weighting(partial(_score, form), partial(_weigh, form))

@@ -29,7 +29,7 @@ class SequenceError(ValueError):
 
 
 def read_numbers(path: Path) -> np.ndarray:
-    """Return finite numbers `(rows, columns)` from a text file. Raises `SequenceError` for anything else in it.
+    """Rows of numbers `(rows, columns)`, finite, from a text file; `SequenceError` for anything else in it.
 
     A first line such as "# x y z, metres; 214 rows" announces how many there are: a file that was cut off is noticed.
     """
@@ -50,7 +50,7 @@ def read_numbers(path: Path) -> np.ndarray:
 
 
 def _read_rows(path: Path, columns: int, what: str) -> np.ndarray:
-    """Return `read_numbers` with so many columns; `what` names them in the message."""
+    """`read_numbers` with so many columns; `what` they are, for the message."""
     rows = read_numbers(path)
     if rows.shape[1] != columns:
         raise SequenceError(f"{path} must hold rows of {columns} numbers ({what}); got rows of {rows.shape[1]}")
@@ -58,7 +58,7 @@ def _read_rows(path: Path, columns: int, what: str) -> np.ndarray:
 
 
 def read_tum(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
-    """Return times `(T,)` and poses `(T, 4, 4)` of a TUM trajectory file (t tx ty tz qx qy qz qw per row)."""
+    """Times `(T,)` and poses `(T, 4, 4)` of a TUM trajectory file (t tx ty tz qx qy qz qw per row)."""
     rows = _read_rows(Path(path), 8, "t tx ty tz qx qy qz qw")
     norms = np.linalg.norm(rows[:, 4:], axis=1)
     if (np.abs(norms - 1) > 1e-2).any():
@@ -80,7 +80,7 @@ def write_tum(path: str | Path, times: np.ndarray, poses: np.ndarray) -> None:
 
 
 def read_pose(path: str | Path) -> np.ndarray:
-    """Return a camera-to-world matrix `(4, 4)`, optical convention, from a file in any of the formats that hold poses.
+    """A camera-to-world matrix `(4, 4)`, optical convention, from a file in any of the formats that hold poses.
 
     A 4 x 4 matrix, or the first row of a poses.txt (frame, then 16 numbers) or of a TUM trajectory (8 numbers).
     Raises `FileNotFoundError` for a missing file, `SequenceError` for anything else in it.
@@ -100,7 +100,7 @@ def read_pose(path: str | Path) -> np.ndarray:
 
 
 def read_poses(path: Path) -> tuple[list[int], np.ndarray]:
-    """Return frame numbers and camera-to-world matrices `(T, 4, 4)` of a poses.txt (frame, 16 numbers per row)."""
+    """Frame numbers and camera-to-world matrices `(T, 4, 4)` of a poses.txt (frame, then 16 numbers, per row)."""
     rows = _read_rows(path, 17, "frame, then a 4 x 4 matrix")
     if (rows[:, 0] != np.rint(rows[:, 0])).any() or (np.diff(rows[:, 0]) <= 0).any():
         raise SequenceError(f"{path}: frame numbers must be whole and ascending, each once")
@@ -124,7 +124,7 @@ def _nearest_rigid(poses: np.ndarray) -> np.ndarray:
 
 
 def read_depth_png(path: str | Path, units_per_metre: float = UNITS_PER_METRE) -> np.ndarray:
-    """Return a depth image `(H, W)`, float32 metres, of a 16-bit PNG in millimetres or as given; 0 becomes NaN."""
+    """Depth image `(H, W)` float32 metres from a 16-bit PNG, in millimetres or as told; 0 becomes NaN (unmeasured)."""
     image = read_image(path, "depth image", SequenceError, kinds=("PNG",), missing=FileNotFoundError)
     if image.dtype != np.uint16 or image.ndim != 2:
         raise SequenceError(f"{path} must be a 16-bit single-channel PNG; got {image.dtype} with shape {image.shape}")
@@ -145,7 +145,7 @@ def write_depth_png(path: str | Path, depth: np.ndarray) -> None:
 
 
 def depth_files(folder: Path) -> dict[int, Path]:
-    """Return the depth images of a recording by frame number, the first run of digits in the name."""
+    """Depth images of a recording by frame number: the first run of digits in the name."""
     if not (folder / "depth").is_dir():
         raise FileNotFoundError(f"{folder} has no folder depth/ with 16-bit PNG images")
     files: dict[int, Path] = {}
@@ -176,7 +176,7 @@ def require_same_frames(folder: Path, pose_frames: list[int], image_frames: list
 
 
 def read_tum_folder(folder: Path) -> tuple[dict[int, Path], np.ndarray, np.ndarray | None]:
-    """Return images by their row in depth.txt (1, 2, ...), times `(T,)` in seconds, and poses `(T, 4, 4)` or None.
+    """Images by their row in depth.txt (1, 2, ...), times `(T,)` in seconds, and poses `(T, 4, 4)` where there are any.
 
     With groundtruth.txt an image's pose is the one nearest in time, and an image without one within
     `TUM_TIME_DIFFERENCE` is left out, as the dataset's own tool associate.py does it.
@@ -208,7 +208,7 @@ def read_tum_folder(folder: Path) -> tuple[dict[int, Path], np.ndarray, np.ndarr
 
 
 def read_times(folder: Path, camera_to_world: np.ndarray) -> np.ndarray | None:
-    """Return the times of groundtruth.txt, which must hold the poses of poses.txt; None if it is missing."""
+    """Times of groundtruth.txt, which must hold the poses of poses.txt; None where it is missing."""
     path = folder / "groundtruth.txt"
     if not is_given(path):
         return None
@@ -221,13 +221,13 @@ def read_times(folder: Path, camera_to_world: np.ndarray) -> np.ndarray | None:
 
 
 def read_path_on_floor(folder: Path) -> np.ndarray | None:
-    """Return the surveyed path `(P, 3)` in metres from path_on_floor.txt; None if it is missing."""
+    """The surveyed path `(P, 3)` in metres from path_on_floor.txt; None where it is missing."""
     path = folder / "path_on_floor.txt"
     return _read_rows(path, 3, "x y z") if is_given(path) else None
 
 
 def read_gravity(folder: Path, frames: list[int], times: np.ndarray | None) -> np.ndarray | None:
-    """Return down in the camera's optical frame `(T, 3)`, of any length, from gravity.txt or accelerometer.txt.
+    """Down in the camera's optical frame `(T, 3)`, of any length, from gravity.txt, else from accelerometer.txt.
 
     times: `(T,)` seconds, of the frames. None where both files are missing, or no frame has a time.
     """
@@ -245,7 +245,7 @@ def read_gravity(folder: Path, frames: list[int], times: np.ndarray | None) -> n
 
 
 def _read_accelerometer(folder: Path, times: np.ndarray) -> np.ndarray | None:
-    """Return down `(T, 3)` at times `(T,)` from accelerometer.txt of a TUM RGB-D recording: rows t ax ay az, m/s^2.
+    """Down `(T, 3)` at times `(T,)` from accelerometer.txt of a TUM RGB-D recording: rows t ax ay az, m/s^2.
 
     The mean of the samples nearest in time, `ACCELEROMETER_SAMPLES` of them, leaves out most of the hand's own
     acceleration. Some drivers give the force that holds the camera up, others its opposite. We take a camera to be held
@@ -271,7 +271,7 @@ def _read_accelerometer(folder: Path, times: np.ndarray) -> np.ndarray | None:
 
 
 def read_up(folder: Path) -> str | None:
-    """Return which world axis points up, from up.txt; None if it is missing."""
+    """Which world axis points up, from up.txt; None where it is missing."""
     path = folder / "up.txt"
     if not is_given(path):
         return None
