@@ -40,7 +40,7 @@ def _seeds(parser: argparse.ArgumentParser, told: str, default: str | None = Non
 def _corridor(parser: argparse.ArgumentParser) -> None:
     options.add_number(parser, "--seed", "seed of the recording and of the filter (default: 0)", 0)
     _seeds(parser, "several seeds instead: median, least and greatest over their recordings")
-    told = "generated from the seed (default), or data/corridor/wagon, where a seed is the filter's alone"
+    told = "made anew for the seed (default), or data/corridor/wagon, where a seed is the filter's alone"
     _choice(parser, "--recording", told, ("own", "shipped"), "own")
     told = "measure instead what the simulator's idealizations are worth, on small images (seeds 10001-10003)"
     options.add_flag(parser, "--idealizations", told)
@@ -56,7 +56,7 @@ def _corridor(parser: argparse.ArgumentParser) -> None:
 
 def _room(parser: argparse.ArgumentParser) -> None:
     options.add_number(
-        parser, "--seed", "of the photographs; any other than 4 takes new ones (default: 4, the shipped ones)"
+        parser, "--seed", "of the photographs; another than 4 takes them anew (default: 4, the shipped ones)"
     )
     options.add_number(parser, "--poses", "only the first N poses of each experiment (default: all)")
     options.add_folder(parser, "--data", "made by tools.make_data room (default: data/room)")
@@ -89,7 +89,7 @@ def _rooms(parser: argparse.ArgumentParser) -> None:
 
 def _walk(parser: argparse.ArgumentParser) -> None:
     options.add_number(parser, "--seed", "seed of room and walk (default: 1)", 1)
-    _seeds(parser, "several rooms instead, reported together")
+    _seeds(parser, "several rooms instead, told together")
     options.add_text(parser, "--every", "NUMBERS", "thin the recordings: 1,2,4 runs each (default: 1,2,4)", "1,2,4")
     told = "with commas: annealed, recovering (it searches when lost), paper, floor, others as in compare"
     options.add_text(parser, "--methods", "NAMES", f"{told} (default: annealed,floor)", "annealed,floor")
