@@ -2,6 +2,7 @@
 
 import ast
 import importlib.metadata
+import os
 import re
 import shutil
 import subprocess
@@ -17,31 +18,25 @@ ROOT = Path(__file__).resolve().parents[1]
 LOCK = ROOT / "environment-test.txt"
 STUDENTS = ROOT / "environment.txt"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
-# What only the lessons, the commands or the tests have.
-LESSONS_ONLY = ("jupyterlab", "ipywidgets", "IPython", "matplotlib", "pyvista", "tqdm", "pytest", "nbval")
+# What only the lessons, the commands and the tests have.
+LESSONS_ONLY = ("courseware", "jupyterlab", "ipywidgets", "IPython", "matplotlib", "pyvista", "tqdm", "pytest", "nbval")
 
-# Refuses the named packages, imports every module of the two methods, and takes one step of each.
-USE_THE_METHODS = """
-import importlib, pkgutil, sys
-refused = set(sys.argv[1:])
+# Refuses the named packages, imports every module of the library, and runs README's two snippets.
+USE_THE_LIBRARY = """
+import importlib, pkgutil, re, sys
+readme, *refused = sys.argv[1:]
 class Refuse:
     def find_spec(self, name, path=None, target=None):
         if name.split(".")[0] in refused:
             raise ModuleNotFoundError(f"No module named {name!r}", name=name)
 sys.meta_path.insert(0, Refuse())
-import course_lib.beyond, course_lib.depth_mcl, course_lib.rendering, course_lib.spherical_stereo
-for method in (course_lib.rendering, course_lib.depth_mcl, course_lib.spherical_stereo, course_lib.beyond):
-    for module in pkgutil.walk_packages(method.__path__, method.__name__ + "."):
-        importlib.import_module(module.name)
-import numpy as np
-from course_lib.depth_mcl import DepthCamera, DepthRenderer, SceneMap
-corners = np.array([[3.0, -9.0, -9.0], [3.0, 9.0, -9.0], [3.0, 0.0, 18.0]])
-with DepthRenderer(SceneMap(corners, [[0, 1, 2]]), DepthCamera(8, 6, 8.0, 8.0, 4.0, 3.0, 0.1, 10.0)) as renderer:
-    print(round(float(renderer.render(np.zeros((1, 6)))[0, 3, 4]), 3))
-from course_lib.spherical_stereo import fit_rigid_2d
-square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
-print(round(fit_rigid_2d(square, square + [2.0, 0.0]).x, 6))
-print(sorted(refused & {name.split(".")[0] for name in sys.modules}))
+import course_lib
+print(course_lib.__file__)
+for module in pkgutil.walk_packages(course_lib.__path__, "course_lib."):
+    importlib.import_module(module.name)
+for snippet in re.findall("```python\\n(.*?)```", open(readme, encoding="utf-8").read(), re.S):
+    exec(snippet, {"__name__": "mine"})
+print(sorted(set(refused) & {name.split(".")[0] for name in sys.modules}))
 """
 
 
@@ -52,14 +47,6 @@ def imported_packages(path):
             yield from (alias.name.split(".")[0] for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.level == 0:
             yield node.module.split(".")[0]
-
-
-@pytest.mark.slow
-def test_the_methods_import_and_run_without_what_only_the_lessons_have():
-    done = subprocess.run(
-        [sys.executable, "-c", USE_THE_METHODS, *LESSONS_ONLY], capture_output=True, text=True, cwd=ROOT
-    )
-    assert done.stdout.splitlines() == ["3.0", "2.0", "[]"], done.stderr
 
 
 def test_what_the_methods_import_is_what_is_installed_with_them():
@@ -73,7 +60,7 @@ def test_what_the_methods_import_is_what_is_installed_with_them():
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
-    """Names of the files that setuptools would install, from a build of a copy of both packages."""
+    """A folder with what setuptools installs, from a build of a copy of both packages."""
     folder = tmp_path_factory.mktemp("build")
     for package in ("course_lib", "courseware"):
         shutil.copytree(ROOT / package, folder / package, ignore=shutil.ignore_patterns("__pycache__"))
@@ -82,7 +69,7 @@ def built(tmp_path_factory):
     command = [sys.executable, "-c", "from setuptools import setup; setup()", "-q", "build", "--build-lib", "built"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    return {path.relative_to(folder / "built").as_posix() for path in (folder / "built").rglob("*") if path.is_file()}
+    return folder / "built"
 
 
 def test_every_file_of_the_library_is_installed_and_nothing_else(built):
@@ -91,8 +78,18 @@ def test_every_file_of_the_library_is_installed_and_nothing_else(built):
         for path in (ROOT / "course_lib").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts and not re.search(r"\.pyc$|/\.", path.as_posix())
     }
-    assert built == there
-    assert "course_lib/py.typed" in built
+    assert {path.relative_to(built).as_posix() for path in built.rglob("*") if path.is_file()} == there
+    assert "course_lib/py.typed" in there
+
+
+@pytest.mark.slow
+def test_the_installed_library_runs_the_readmes_snippets_in_any_folder_without_what_lessons_need(built, tmp_path):
+    command = [sys.executable, "-P", "-c", USE_THE_LIBRARY, str(ROOT / "README.md"), *LESSONS_ONLY]
+    environment = os.environ | {"PYTHONPATH": str(built)}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[0] == str(built / "course_lib" / "__init__.py")
+    assert done.stdout.splitlines()[-1] == "[]"
 
 
 def locked(text):
