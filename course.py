@@ -112,9 +112,9 @@ def why_not_ready(lock):
         lock = TESTS if found.get("lock") == TESTS else lock  # what the tests need is never taken away
         changed = [name for name, value in wanted(lock).items() if found.get(name) != value]
     except (OSError, ValueError, AttributeError):
-        return "The .venv here is half-made, because a set-up was interrupted: making it anew.", True, lock
+        return "The .venv here is half-made, because a set-up was interrupted: making a new one.", True, lock
     if "folder" in changed or "python" in changed or not os.path.exists(PYTHON):
-        return "The .venv here was made in another folder or by another Python: making it anew.", True, lock
+        return "The .venv here was made in another folder or by another Python: making a new one.", True, lock
     if "lock" in changed and "lock" in found:
         return "The tests need more packages than the lessons: adding them, about 120 MB.", False, lock
     return (lock + " or pyproject.toml has changed: bringing .venv up to date.", False, lock) if changed else None
@@ -154,7 +154,7 @@ def see_to_the_system(anew):
 def make_venv():
     """Make an empty environment. The mark that says that it is ours is never away while files are there."""
     os.makedirs(VENV, exist_ok=True)
-    put(MADE, "course.py made this folder, and deletes what is in it when it must be made anew.\n")
+    put(MADE, "course.py made this folder, and deletes what is in it before it makes a new one.\n")
     for name in os.listdir(VENV):
         path = os.path.join(VENV, name)
         if path != MADE:

@@ -52,10 +52,6 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
 }
 COMMANDS = {name: command for group in GROUPS.values() for name, command in group.items()}
 
-# Commands of version 0.1 that are maintainers' tools now.
-TOOLS = ("sweep", "bench", "refresh", "train-detector", "score-detector")
-TOOLS += tuple(f"make-data {what}" for what in ("corridor", "room", "finale", "projects", "training-rooms"))
-
 EXIT_BAD_INPUT = 2
 EXIT_FAULT = 1
 EXIT_INTERRUPTED = 130  # 128 + SIGINT, as shells report it
@@ -117,10 +113,7 @@ def main(words: list[str]) -> int:
 
 
 def what_instead(words: list[str]) -> str:
-    """Return how to go on where the words name no command: the tool it has become, a similar name, or all names."""
-    for old in TOOLS:
-        if words[: len(old.split())] == old.split():
-            return f" any more; it is a tool now: .venv/bin/python -m tools.{old.replace('-', '_', 1)} --help"
+    """Return how to go on where the words name no command: a similar name, or all names."""
     longer = [name for name in COMMANDS if name.split()[0] == words[0]]
     # A higher bar for two words: the first alone makes demo corridor and demo room alike.
     like = meant(" ".join(words[:2]), COMMANDS, 0.8) if len(words) > 1 else ""

@@ -70,7 +70,7 @@ def make_copies(root: Path, fresh: Sequence[str] = (), today: datetime.date | No
         if is_lesson and number in again and mine.exists():
             old = _free_name(mine, today or datetime.date.today())
             os.replace(mine, old)
-            told.append(f"Lesson {number} begins anew; your earlier copy is now {old.relative_to(root)}.")
+            told.append(f"Lesson {number} starts again; your earlier copy is now {old.relative_to(root)}.")
         elif is_lesson and not (first or mine.exists()):
             told.append(f"Lesson {number} is new in your folder: {WORK}/{name}.")
         there, new = _checksum(mine.read_bytes()) if mine.exists() else None, _checksum(content)
@@ -83,7 +83,7 @@ def make_copies(root: Path, fresh: Sequence[str] = (), today: datetime.date | No
         elif begun.get("text") != _text_version(content) and name not in edited:
             told.append(
                 f"Lesson {number} has changed since you began your copy: `python3 course.py lab --fresh {number}` "
-                "starts the new one beside yours."
+                "starts the new one and keeps yours."
                 if is_lesson
                 else f"{WORK}/{name} is changed by you and stays; the course's new one: {NOTEBOOKS}/{name}."
             )

@@ -1,18 +1,31 @@
-"""The pages beside README.md tell one version, name what there is, and ask for the same two commands."""
+"""All pages: their links, commands and minutes are right, they name one version and what there is."""
 
 import json
 import re
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 import yaml
 
 from course_lib import __version__
-from courseware.cli import find_command, version
+from courseware.cli import COMMANDS, CommandParser, find_command, version
+from courseware.paths import numbered_paths
+from tests.notebooks.conftest import read
 
 ROOT = Path(__file__).parents[1]
-PAGES = ("ARCHITECTURE.md", "CHANGELOG.md", "CODE_OF_CONDUCT.md", "CONTRIBUTING.md")
-PAGES += (".github/ISSUE_TEMPLATE/bug.md", ".github/ISSUE_TEMPLATE/idea.md")
+PAGES = sorted(
+    path.relative_to(ROOT).as_posix()
+    for pattern in (
+        "*.md",
+        ".github/**/*.md",
+        "results-in-detail/*.md",
+        "notebooks/**/*.md",
+        "data/**/*.md",
+        "tools/*.md",
+    )
+    for path in ROOT.glob(pattern)
+)
 
 
 def text(name):
@@ -40,12 +53,61 @@ def test_the_architecture_names_every_package():
     assert {name for name in packages if not re.search(rf"\b{name}\b", picture)} == set()
 
 
+def anchors(page):
+    """The addresses of a page's headings, as GitHub makes them."""
+    headings = (re.sub(r"\]\([^)]*\)", "", one) for one in re.findall(r"^#+ (.*)$", page, re.M))
+    return {re.sub(r"[^\w -]", "", one).strip().lower().replace(" ", "-") for one in headings}
+
+
 @pytest.mark.parametrize("name", PAGES)
-def test_links_and_commands_of_a_page_are_right(name):
-    for target in re.findall(r"\]\(([^)#]+)\)", text(name)):
-        assert (ROOT / name).parent.joinpath(target).exists(), target
-    calls = re.findall(r"python3 course\.py ([a-z][^`#\n]*)", text(name))
-    assert [call for call in calls if find_command(call.split()) is None] == []
+def test_links_of_a_page_lead_to_files_and_headings_that_are_there(name):
+    for target, anchor in re.findall(r"\]\((?!https?://|mailto:)([^)#]*)#?([^)]*)\)", text(name)):
+        found = (ROOT / name).parent / target if target else ROOT / name
+        assert found.exists(), target
+        if anchor and found.suffix == ".md":
+            assert anchor in anchors(found.read_text(encoding="utf-8")), f"{target}#{anchor}"
+
+
+def options(program, module):
+    """The options of a command, with those of its parts (`make_data room`)."""
+    parsers = [CommandParser(prog=program)]
+    module.add_arguments(parsers[0])
+    for action in parsers[0]._actions:
+        parsers += action.choices.values() if isinstance(action.choices, dict) else []
+    return {
+        "--debug",
+        *(option for parser in parsers for action in parser._actions for option in action.option_strings),
+    }
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_commands_of_a_page_are_commands_with_these_options(name):
+    page = re.sub(r"^    git worktree add (?:.+\n)+", "", text(name), flags=re.M)  # what follows runs at another commit
+    calls = re.findall(r"(?:`|python3 )course\.py ([a-z][^`#\n]*)", page)
+    calls += re.findall(r"python -m courseware ([a-z][^`#\n]*)", page)
+    asked = [(f"course.py {call}", find_command(call.split())) for call in calls]
+    assert [call for call, found in asked if found is None] == []
+    used = [(call, f"courseware.commands.{COMMANDS[found[0]][0]}", *found) for call, found in asked]
+    for module, words in re.findall(r"python -m (tools\.(?!NAME|site)\w+)([^`#\n]*)", page):
+        used.append((module, module, module, words.split()))
+    for call, path, program, words in used:
+        module = import_module(path)
+        given = {word.partition("=")[0] for word in words if word.startswith("--") and word != "-->"}
+        if given and not getattr(module, "PASSES_ARGUMENTS_ON", False):
+            assert given <= options(program, module), call
+
+
+LESSON_MINUTES = (
+    r"[Ll]esson ([0-9F]\d) \((\d+) min",  # lesson 07 (50 min)
+    r"^\| \[([0-9F]\d) .*\((\d+) min\)",  # a row of a table that begins with the lesson
+    r"\[[Ll]esson ([0-9F]\d)\]\([^)]*\)[^.]*\.\s+It takes (\d+) minutes",
+)
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_minutes_of_a_lesson_are_those_of_its_own_first_cell(name):
+    found = [pair for pattern in LESSON_MINUTES for pair in re.findall(pattern, text(name), re.M)]
+    assert [(number, int(told)) for number, told in found if read(numbered_paths()[number]).minutes != int(told)] == []
 
 
 def test_one_list_names_the_systems_packages_and_the_dev_container_is_the_graders():

@@ -1,20 +1,17 @@
-"""TEACHING.md: plans whose minutes add up, an entry for every lesson, foundation and project, commands, links and hints
-that exist, a table of costs for every notebook, and an example exercise that really is one."""
+"""TEACHING.md: plans whose minutes add up, an entry for every lesson, foundation and project, hints that exist, a table
+of costs for every notebook, and an example exercise that really is one."""
 
-import functools
 import re
 from dataclasses import replace
-from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 
-import nbformat
 import numpy as np
 import pytest
 
-from courseware.cli import COMMANDS, find_command, parse
 from courseware.lessons.kit.exercises import find_exercise, judge, lesson_exercises
 from courseware.lessons.kit.mistakes import read_hints
 from courseware.paths import REPOSITORY, foundation_paths, notebook_paths, project_paths
+from tests.notebooks.conftest import read
 from tools.bench_tables import capacity_sentence, lessons_rows
 from tools.refresh import solution_cell, stub_cell, with_example
 
@@ -24,15 +21,8 @@ FOUNDATIONS = {path.name[:2]: path for path in foundation_paths()}
 PARTS = ["Before", "Together", "After", "Mistakes"]
 
 
-@functools.cache
-def title_of(number: str) -> str:
-    return nbformat.read((PATHS | FOUNDATIONS)[number], as_version=4).cells[0].source
-
-
 def minutes_of(number: str) -> int:
-    """Minutes of a lesson, or of a project whose title says hours, as its first cell says."""
-    found = re.search(r"\*\*(?:About )?([\d.]+) (minutes|hours)", title_of(number))
-    return round(float(found[1]) * (60 if found[2] == "hours" else 1))
+    return read((PATHS | FOUNDATIONS)[number]).minutes
 
 
 def section(heading: str) -> str:
@@ -101,22 +91,6 @@ def test_points_are_those_of_the_exercises():
     sums = {path.name[:2]: [points[e.level] for e in lesson_exercises(path.name[:2])] for path in notebook_paths()}
     told = re.search(r"(\d+) lessons have (\d+) exercises, (\d+) points", TEACHING).groups()
     assert [int(n) for n in told] == [len(sums), sum(map(len, sums.values())), sum(map(sum, sums.values()))]
-
-
-def test_every_command_is_one_with_these_options_and_every_link_leads_somewhere():
-    lines = re.findall(r"(?:python3 )?course\.py ([a-z][^`\n]*)", TEACHING)
-    assert len(lines) >= 6
-    for line in lines:
-        words = line.partition(" -->")[0].split()
-        found = find_command(words)
-        assert found, f"course.py {line}: {', '.join(COMMANDS)}"
-        name, rest = found
-        module = import_module(f"courseware.commands.{COMMANDS[name][0]}")
-        if rest:
-            parse(name, module, rest)
-    for target in re.findall(r"\]\(([^)#]+)\)", TEACHING):
-        assert (REPOSITORY / target).exists(), target
-    assert "(TEACHING.md)" in (REPOSITORY / "README.md").read_text(encoding="utf-8")
 
 
 COSTS = re.search(r"<!-- costs: measured on \S+, \d+ processors, by (.*?) -->\n(.*?)<!-- end", TEACHING, re.S)

@@ -131,7 +131,7 @@ def test_a_fresh_one_takes_the_name_and_the_old_one_stays_beside_it(small):
         kept.append(mine.read_bytes())
         told = make_copies(small, ["6", "p1"], today=DAY)
     stem = "06_likelihood_and_weights.before-2026-11-23"
-    assert told[0] == f"Lesson 06 begins anew; your earlier copy is now work/{stem}-3.ipynb."
+    assert told[0] == f"Lesson 06 starts again; your earlier copy is now work/{stem}-3.ipynb."
     assert [(small / "work" / f"{stem}{n}.ipynb").read_bytes() for n in ("", "-2", "-3")] == kept
     assert mine.read_bytes() == (small / "notebooks" / LESSON_06).read_bytes()
     assert len(list(project.parent.glob("P1*.ipynb"))) == 4

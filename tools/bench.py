@@ -15,14 +15,12 @@ from pathlib import Path
 
 from courseware.commands.arguments import require_output_folder
 from courseware.run_folder import run_folder
-from tools.bench_tables import bench_table, capacity_sentence, lessons_rows, renders_heading, renders_rows
+from tools.bench_tables import bench_table, capacity_sentence, lessons_rows
 
 ROOT = Path(__file__).resolve().parents[1]
 LOCK = ROOT / "environment-bench.txt"
 TOOLS = ROOT / ".bench"
 STAMP = "course-bench.txt"
-BACKENDS = ["raster", "vtk", "ray"]
-MIN_RENDERS = 20  # fewer leave nothing to compare once memory has settled
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -39,17 +37,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--lessons", nargs="*", metavar="NN", help=what)
     what = "with --lessons: say how many students a server of this size carries (default: 16 4)"
     add("--server", nargs=2, type=float, default=(16.0, 4.0), metavar=("GIB", "PROCESSORS"), help=what)
-    what = "instead: memory over N renders of each backend, and whether images stay the same to the last bit"
-    add("--renders", type=int, metavar="N", help=what)
-    what = "with --renders: and over N new renderers (default: 300)"
-    add("--renderers", type=int, default=300, metavar="N", help=what)
-    add("--backends", nargs="+", choices=BACKENDS, default=BACKENDS, help="with --renders: of these backends alone")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Measure what was asked for, and print it."""
-    if arguments.renders is not None:
-        return run_renders(arguments)
     return run_tools(arguments) if arguments.lessons is None else run_lessons(arguments)
 
 
@@ -67,23 +58,6 @@ def run_tools(arguments: argparse.Namespace) -> int:
         result = measured("measure", *words)
         print(json.dumps(result) if arguments.json else bench_table(result), flush=True)
         (out / "bench.json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
-    return 0
-
-
-def run_renders(arguments: argparse.Namespace) -> int:
-    """Render very often, each backend in a process of its own; print what became of memory and of the images."""
-    for option, n in (("--renders", arguments.renders), ("--renderers", arguments.renderers)):
-        if n < MIN_RENDERS:
-            raise ValueError(f"{option} must be a whole number, at least {MIN_RENDERS}; got {n}")
-    found = {}
-    for backend in arguments.backends:
-        print(f"measuring: {backend}", file=sys.stderr, flush=True)
-        found[backend] = measured("renders", backend, str(arguments.renders), str(arguments.renderers))
-        if not arguments.json:
-            heading = [renders_heading()] if len(found) == 1 else []
-            print(*heading, renders_rows(backend, found[backend]), sep="\n", flush=True)
-    if arguments.json:
-        print(json.dumps(found))
     return 0
 
 

@@ -1,11 +1,11 @@
-"""What `bench`, `bench --renders` and `bench --lessons` print: their JSON as tables."""
+"""Write what `bench` and `bench --lessons` print: their JSON as tables."""
 
 SYSTEM_BYTES = 2**30  # left to the operating system
 PATIENCE_S = 120.0  # that a class waits for its results when everybody runs all the cells at the same moment
 
 
 def bench_table(result: dict) -> str:
-    """Every row with today's number: times of this run, and ratios with their least and greatest over the repeats."""
+    """Return the table: times of this run, and ratios with their least and greatest over the repeats."""
     machine = result["machine"]
     load = "" if machine["load_at_the_end"] is None else f", load {machine['load_at_the_end']:.1f} at the end"
     lines = [
@@ -16,33 +16,6 @@ def bench_table(result: dict) -> str:
     for scene in result["scenes"]:
         lines += ["", f"{scene['name']}, {scene['triangles']:,} triangles", f"{'':46} {heads}"]
         lines += [_row(name, row) for name, row in scene["rows"].items()]
-    particles, maps, true = result["particles"], result["maps"], result["against_the_true_world"]
-    waiting, memory, pictures = result["waiting"], result["memory"], result["picture_ms"]
-    keys = f"from a key to its picture: not measured ({str(pictures.get('missing'))[:80]})"
-    if "missing" not in pictures:
-        keys = (
-            f"from a key on a panel to its picture: {min(pictures.values()):.0f} to {max(pictures.values()):.0f} ms, "
-            f"the medians of {len(pictures)} lessons' first panels (wanted: 150 ms)"
-        )
-    lines += [
-        "",
-        f"one of {particles['particles'][1]} particles costs {particles['growth']:.2f} of one of "
-        f"{particles['particles'][0]}; memory grew by {particles['peak_memory_grew_mb']:.0f} MB",
-        f"a map of {maps['triangles'][1]:,} triangles costs {maps['growth']:.2f} of one of {maps['triangles'][0]:,} "
-        f"({maps['drawn'][1]:,} and {maps['drawn'][0]:,} drawn), after {maps['preprocessing_s']:.0f} s once",
-        *(
-            f"depth error against the true world, {name}: median {row['median_mm']:.2f} mm, "
-            f"99 % below {row['percentile_99_mm']:.0f} mm"
-            for name, row in true.items()
-        ),
-        f"import course_lib {waiting['import_s']:.2f} s, course.py --help {waiting['help_s']:.2f} s (wanted: 0.3 s)",
-        f"lesson 00 from its kernel's start to its last cell {waiting['lesson_00_s']:.1f} s (wanted: 20 s)",
-        f"a pose of paper 2 {waiting['pose_s']:.2f} s (wanted: 0.5 s); its models were loaded in "
-        f"{waiting['loading_s']:.1f} s",
-        keys,
-        f"memory over the second half of {memory['steps']:,} steps: {memory['steps_grew_mb']:+.1f} MB; over the second "
-        f"half of {memory['renderers']} renderers: {memory['renderers_grew_mb']:+.1f} MB",
-    ]
     return "\n".join(lines)
 
 
@@ -57,26 +30,6 @@ def _row(name: str, row: dict) -> str:
 def _spread(told: dict[str, float], digits: int) -> str:
     middle, least, greatest = (f"{told[key]:.{digits}f}" for key in ("median", "least", "greatest"))
     return f"{middle} ({least} to {greatest})"
-
-
-def renders_heading() -> str:
-    """The line above the rows of `bench --renders`."""
-    heads = ("before", "settled", "greatest", "end", "grew [MB]", "other images")
-    return f"{'memory held [MB]':42}" + "".join(f"{head:>14}" for head in heads)
-
-
-def renders_rows(backend: str, told: dict) -> str:
-    """Memory (MB) before the first call, settled, the greatest from then on, at the end; calls of another image."""
-    if "missing" in told:
-        return f"{backend:42}  not here: {told['missing'][:90]}"
-    lines = []
-    for key, what in (("renders", "renders, one renderer"), ("renderers", "renderers, a render each")):
-        one = told[key]
-        held = [one[name] for name in ("before_the_first_mb", "settled_mb", "greatest_mb", "end_mb")]
-        name = f"{backend}, {one['calls']:,} {what}"
-        numbers = [f"{mb:14.1f}" for mb in held] + [f"{one['grew_mb']:+14.1f}", f"{one['other_images']:14}"]
-        lines.append(f"{name:42}" + "".join(numbers))
-    return "\n".join(lines)
 
 
 def lessons_rows(result: dict) -> list[str]:

@@ -1,7 +1,7 @@
-"""Make what the course ships under data/, and photographs to train its detector on.
+"""Make what the course ships under data/.
 
 Old data are replaced at the end, all at once: a run that is stopped leaves them as they were. The rooms of the projects
-and for training are kept one by one: the same command given again goes on where it was stopped.
+are kept one by one: the same command given again goes on where it was stopped.
 """
 
 import argparse
@@ -21,9 +21,6 @@ SHIPPED = {
     "finale": (10_001, "the semantic map and the mesh map of the room in which both methods meet"),
 }
 """Folder of data/ that is made from one seed -> the shipped data's, and what it holds."""
-FIRST_TRAINING_ROOM, N_TRAINING_ROOMS = 1000, 400  # chosen; rooms 100 to 119 choose the threshold
-IMAGES_PER_ROOM = 3
-FIRST_TEST_ROOM, N_TEST_ROOMS = 200, 20
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,20 +41,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     what = f"where finished rooms are kept, and looked for (default: {work})"
     add("--work", **folder, default=Path(work), help=what)
     add("--processes", **number, help="rooms made at a time (default: one for each core)")
-    add = kind("training-rooms", "photographs of generated rooms with their boxes, for a detector")
-    add("--out", **folder, required=True, help="where pictures and boxes.json go (no default)")
-    what = f"seed of the first room, the others count up from it (default: {FIRST_TRAINING_ROOM})"
-    add("--first-room", **number, default=FIRST_TRAINING_ROOM, help=what)
-    add("--rooms", **number, default=N_TRAINING_ROOMS, help=f"how many (default: {N_TRAINING_ROOMS})")
-    what = f"pictures of each; other numbers are other pictures of the same rooms (default: {IMAGES_PER_ROOM})"
-    add("--images-per-room", **number, default=IMAGES_PER_ROOM, help=what)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Make the data and say what was made; return the exit code."""
     if arguments.kind in SHIPPED:
         return make_shipped(arguments)
-    return make_projects(arguments) if arguments.kind == "projects" else make_training_rooms(arguments)
+    return make_projects(arguments)
 
 
 def make_shipped(arguments: argparse.Namespace) -> int:
@@ -110,20 +100,6 @@ def make_projects(arguments: argparse.Namespace) -> int:
             (new / "SHA256SUMS").write_text(checksums(new, [f"rooms_{name}.json"]))
             print(f"{count} views ({name})")
     print(f"written to {practice} and {hidden}")
-    return 0
-
-
-def make_training_rooms(arguments: argparse.Namespace) -> int:
-    """Photograph generated rooms."""
-    asked = arguments.first_room, arguments.rooms, arguments.images_per_room
-    for option, value, least in zip(("--first-room", "--rooms", "--images-per-room"), asked, (0, 1, 1), strict=True):
-        if value < least:
-            raise ValueError(f"{option} must be at least {least}; got {value}")
-    require_output_folder(arguments.out)
-    from tools.training_images import make_room_images
-
-    images = make_room_images(arguments.out, *asked, progress_bar("rooms", "room"))
-    print(f"{arguments.out}: {len(images)} pictures of {len({image['room_seed'] for image in images})} rooms")
     return 0
 
 

@@ -20,7 +20,7 @@ from courseware.paths import REPOSITORY, numbered_paths
 WORDS_A_MINUTE, LINES_A_MINUTE, A_FIGURE, A_PANEL = 130, 10, 1, 8
 AN_EXERCISE = {"warm-up": 4, "core": 9, "challenge": 30}
 STATED = re.compile(r"\*\*About \d+ minutes\*\* \(\d+ with all parts marked \*More\*\)")
-PAGES = [REPOSITORY / name for name in ("README.md", "TEACHING.md", "notebooks/README.md")]
+PAGES = [REPOSITORY / name for name in ("TEACHING.md", "notebooks/README.md")]
 
 
 class Pace(NamedTuple):
@@ -102,7 +102,7 @@ def reading(notebook: nbformat.NotebookNode) -> tuple[float, float]:
 
 
 def with_minutes(line: str, minutes: dict[str, int]) -> str:
-    """Return a line of a README or of TEACHING.md with the minutes of its lessons, or with their sum."""
+    """Return a line of notebooks/README.md or TEACHING.md with the minutes of its lessons, or with their sum."""
     if row := re.match(r"\| \[(\w\d) (?:· )?|### ([0-9F]\d) · ", line):
         number = row[1] or row[2]
         return re.sub(r"\(\d+ min\)|\d+ min(?= \|$)", lambda m: re.sub(r"\d+", str(minutes[number]), m[0]), line)
@@ -120,7 +120,7 @@ def with_minutes(line: str, minutes: dict[str, int]) -> str:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `pace`."""
     parser.add_argument("lessons", nargs="*", metavar="NN", help="lessons, such as 03 or F1 (default: all)")
-    what = "write the minutes into first cells, and of all lessons into the READMEs and TEACHING.md"
+    what = "write the minutes into first cells, and of all lessons into notebooks/README.md and TEACHING.md"
     parser.add_argument("--write", action="store_true", help=what)
 
 

@@ -53,7 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--no-browser", action="store_true", help="open no browser, only print the address")
     told = "the notebook to open: 06, F1, P1 or a path; of a lesson it is your copy in work/ (default: lesson 00)"
     add("--notebook", metavar="PATH", help=told)
-    told = "begin these lessons or projects anew (06, P1); your earlier copies are renamed and stay beside the new"
+    told = "start these lessons or projects again (06, P1); your earlier copies are renamed, not deleted"
     add("--fresh", nargs="+", default=[], metavar="NN", help=told)
 
 

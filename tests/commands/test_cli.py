@@ -111,10 +111,6 @@ def test_words_that_do_not_fit_are_told_in_one_sentence_that_says_where_the_opti
         (["demo", "corrider"], "there is no command 'demo corrider'; did you mean demo corridor"),
         (["demo"], "there is no command 'demo'; did you mean: demo corridor, demo room, "),
         (
-            ["make-data", "room"],
-            "there is no command 'make-data room' any more; it is a tool now: .venv/bin/python -m to",
-        ),
-        (
             ["zzzzzz"],
             "there is no command 'zzzzzz'; the commands are, to learn: lab, progress, check, test; to use: localize, ",
         ),

@@ -9,7 +9,7 @@ import pytest
 from course_lib.spherical_stereo.detection.detected_object import box_iou
 from course_lib.spherical_stereo.localizer import SemanticLocalizer
 from courseware.experiments.room import localize_pair, turn_summary, turn_the_rig, weigh_by_covariance
-from tools.detector_evaluation import labelled_panoramas, score_detector
+from tools.score_detector import labelled_panoramas, score_detector
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "detector"
 

@@ -2,6 +2,7 @@
 that a new one is covered at once."""
 
 import ast
+import re
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -23,6 +24,12 @@ class Lesson:
     @property
     def number(self) -> str:
         return self.path.name[:2]
+
+    @property
+    def minutes(self) -> int:
+        """Minutes that the first cell states; of a project, whose first cell states hours, 60 for each."""
+        number, unit = re.search(r"\*\*(?:About )?([\d.]+) (minutes|hours)", self.cells[0].source).groups()
+        return round(float(number) * (60 if unit == "hours" else 1))
 
     @property
     def cells(self) -> list:

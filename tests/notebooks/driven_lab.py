@@ -1,4 +1,4 @@
-"""JupyterLab in a real browser, driven: what the browser tests and `tools.bench` have in common."""
+"""JupyterLab in a real browser, driven: what the browser tests have in common."""
 
 import os
 import shutil

@@ -1,6 +1,7 @@
-"""notebooks/README.md: every lesson with its time and its picture, paths whose times add up; and the glossary."""
+"""Every lesson has all its places, among them its time and its picture in notebooks/README.md; and the glossary."""
 
 import re
+from fnmatch import fnmatch
 
 import numpy as np
 import pytest
@@ -15,13 +16,6 @@ README, GLOSSARY = ((FOLDER / name).read_text(encoding="utf-8") for name in ("RE
 ENTRIES = dict(re.findall(r"^### (.+)\n((?:.+\n?)+)", GLOSSARY, re.M))
 
 
-def minutes_of(number: str) -> int:
-    """How many minutes a lesson says that it takes."""
-    return int(
-        re.search(r"\*\*(?:About )?(\d+) minutes", numbered_paths()[number].read_text(encoding="utf-8")).group(1)
-    )
-
-
 def row_of(path) -> str:
     return next(
         (line for line in README.splitlines() if " · " in line and f"]({path.relative_to(FOLDER).as_posix()})" in line),
@@ -33,7 +27,7 @@ def row_of(path) -> str:
 def test_every_lesson_has_a_row_with_its_time_and_its_picture(path):
     number, row = path.name[:2], row_of(path)
     assert row.startswith(f"| [{number} · ")
-    assert f"({minutes_of(number)} min)" in row
+    assert f"({read(path).minutes} min)" in row
     source, alt = re.search(r'<img src="([^"]+)" width="250" alt="([^"]+)">', row).groups()
     assert len(alt.split()) >= 4
     assert re.fullmatch(rf"pictures/{number}\.(png|webp|svg)", source)
@@ -51,21 +45,63 @@ def test_a_lesson_begins_with_its_picture_which_is_of_its_stored_outputs(path, t
         assert np.less_equal(Image.open(made).size, MAX_SIZE).all()
 
 
-def test_every_link_leads_somewhere_and_the_times_of_the_paths_add_up():
-    for target in re.findall(r"\]\(([^)#]+)\)", README):
-        assert (FOLDER / target).exists(), target
+def test_the_times_of_the_paths_add_up():
     rows = re.findall(r"^\| ([a-z0-9 ]+) \| ((?:\d\d(?:, )?)+) \| (\d+) h (\d+) min \|$", README, re.M)
     assert [name for name, *_ in rows] == ["paper 1", "paper 2", "both"]
     for _, lessons, hours, minutes in rows:
-        assert sum(minutes_of(number) for number in lessons.split(", ")) == 60 * int(hours) + int(minutes)
+        assert sum(read(numbered_paths()[number]).minutes for number in lessons.split(", ")) == 60 * int(hours) + int(
+            minutes
+        )
     assert set(rows[0][1].split(", ") + rows[1][1].split(", ")) < set(rows[2][1].split(", "))
 
 
+def numbers_in(text: str) -> set[str]:
+    """The lessons that a text names: "01, 03 to 05" names four."""
+    found = re.findall(r"\b(\d\d)\b(?:\]\([^)]*\))?(?: to \[?(\d\d)\b)?", text)
+    return {f"{n:02}" for first, last in found for n in range(int(first), int(last or first) + 1)}
+
+
+@pytest.mark.parametrize("path", notebook_paths(), ids=lambda path: path.name[:2])
+def test_a_lesson_has_all_the_places_that_contributing_lists(path):
+    number, root = path.name[:2], REPOSITORY
+    readme, changes, teaching = (
+        (root / name).read_text(encoding="utf-8") for name in ("README.md", "CHANGELOG.md", "TEACHING.md")
+    )
+    globs = re.findall(r"^notebooks/\S+$", (root / "tools/site_source/contents.txt").read_text(encoding="utf-8"), re.M)
+    parts = re.findall(r"^\| (?:Start|Paper [12]|Both) \|([^|]*)\|", readme, re.M)
+    paths = re.findall(r"^\| [a-z0-9 ]+ \|([\d, ]+)\| \d+ h", README, re.M)
+    plan = teaching.partition("### Fifteen meetings")[2].partition("###")[0]
+    places = {
+        f"courseware/lessons/lesson_{number}/__init__.py": None,
+        f"courseware/answers/lesson_{number}.py": None,
+        f"tests/lessons/test_lesson_{number}.py": None,
+        f"tests/lessons/right_answers/lesson_{number}.py": None,
+        "README.md: the row of its part": number in numbers_in(" ".join(parts)),
+        "CHANGELOG.md: a line": number in numbers_in(" ".join(re.findall(r"\([^()]*\)|[Ll]essons? [^.]*", changes))),
+        "tools/site_source/contents.txt: the part of the web site": any(
+            fnmatch(f"notebooks/{path.stem}", glob) for glob in globs
+        ),
+        "notebooks/README.md: a row": bool(row_of(path)),
+        "notebooks/README.md: a path": number in numbers_in(" ".join(paths)),
+        f"notebooks/pictures/{number}.*": any((FOLDER / "pictures").glob(f"{number}.*")),
+        "TEACHING.md, section 1: the table of costs": f"\n| {number} | " in teaching.partition("## 2. Plans")[0],
+        "TEACHING.md, section 2: fifteen meetings": number in numbers_in(plan),
+        "TEACHING.md, section 3: an entry": f"\n### {number} · " in teaching,
+    }
+    before = [one for one in notebook_paths() if one.name < path.name][-1:]
+    for lesson in map(read, before):
+        next_text = lesson.markdown.rpartition("**Next:**")[2]
+        places[f"{lesson.path.name}: its first cell links to the lesson"] = path.name in lesson.cells[0].source
+        places[f"{lesson.path.name}: its last cell links to the lesson"] = path.name in lesson.cells[-1].source
+        places[f"{lesson.path.name}: its **Next:** names the lesson"] = number in numbers_in(next_text)
+    missing = [name for name, there in places.items() if not ((root / name).exists() if there is None else there)]
+    assert not missing, "missing; CONTRIBUTING.md, 'A new lesson', says what belongs there:\n" + "\n".join(missing)
+
+
 @pytest.mark.parametrize("term", ENTRIES)
-def test_an_entry_is_short_named_as_its_anchor_and_names_a_lesson_that_exists(term):
+def test_an_entry_is_named_as_its_anchor_and_names_a_lesson_that_exists(term):
     assert len(ENTRIES) >= 50
     assert re.fullmatch(r"[a-z0-9 -]+", term)
-    assert len(ENTRIES[term].split()) <= 60
     named = {number for group in re.findall(r"Lessons? ([\dF and to,]+)\.", ENTRIES[term]) for number in group.split()}
     numbers = {word for word in named if re.fullmatch(r"[\dF]\d", word)}
     assert numbers

@@ -1,4 +1,4 @@
-"""Everything that `.venv/bin/python -m tools.bench` tells, measured in this process: prints one JSON object.
+"""Measure what `.venv/bin/python -m tools.bench` prints, in this process, and print one JSON object.
 
 The command runs it with the tools of environment-bench.txt on its path (tools/bench.py).
 """
@@ -20,11 +20,9 @@ from course_lib.recordings import system_noise
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 from courseware.experiments.results import versions
-from courseware.paths import data_path, notebook_paths
-from tools.benchmarks import growth, side_by_side, waiting
+from courseware.paths import data_path
+from tools.benchmarks import side_by_side
 from tools.benchmarks.side_by_side import TOOLS, Scene
-
-QUICK_LESSONS = ("00", "07", "15")
 
 
 def corridor() -> Scene:
@@ -47,37 +45,24 @@ def note(text: str) -> None:
 
 
 def measure_all(quick: bool, recording: Path | None) -> dict[str, object]:
-    """Every number of the table."""
+    """Return every number of the table."""
     repeats, scene = (3 if quick else 9), corridor()
-    note("particles")  # before tools that would hold more memory than many particles do
-    found: dict[str, object] = {"quick": quick, "particles": growth.particle_growth(scene, 2 if quick else 5)}
     note("corridor, side by side")
     rows = side_by_side.measure(scene, list(TOOLS), repeats)
-    found["scenes"] = [{"name": scene.name, "triangles": len(scene.scene_map), "rows": rows}]
+    scenes = [{"name": scene.name, "triangles": len(scene.scene_map), "rows": rows}]
     if recording is not None:
         note("a recording in six degrees of freedom, side by side")
         other = six_degrees(recording)
         other_rows = side_by_side.measure(other, ["embree", "embreex", "pyvista"], repeats)
-        found["scenes"].append({"name": other.name, "triangles": len(other.scene_map), "rows": other_rows})
-    note("triangles")
-    found["maps"] = growth.map_growth(scene, repeats)
-    note("against the true world")
-    true_world = SceneMap.load(data_path("corridor/true_world.ply"))
-    found["against_the_true_world"] = growth.truth(scene, true_world, 8 if quick else 40)
-    note("start-up, lesson 00, a room's poses")
-    found["waiting"] = waiting.start_up(2 if quick else 7) | waiting.room_seconds(5 if quick else 15)
-    note("keys and pictures, in a browser")
-    lessons = QUICK_LESSONS if quick else tuple(path.name[:2] for path in notebook_paths())
-    try:
-        found["picture_ms"] = waiting.picture_ms(lessons, 8 if quick else 20)
-    except (ImportError, RuntimeError) as error:
-        found["picture_ms"] = {"missing": str(error)}
-    note("memory")
-    found["memory"] = waiting.memory(scene, 200 if quick else 10_000, 20 if quick else 100)
-    found["step_ms"] = rows["step, default"]["ms"]["median"]
+        scenes.append({"name": other.name, "triangles": len(other.scene_map), "rows": other_rows})
     embree = rows[TOOLS["embree"][0]]
-    found["embree_ratio"] = embree["times_default"]["median"] if "missing" not in embree else None
-    return found | {"machine": machine(scene)}
+    return {
+        "quick": quick,
+        "scenes": scenes,
+        "step_ms": rows["step, default"]["ms"]["median"],
+        "embree_ratio": embree["times_default"]["median"] if "missing" not in embree else None,
+        "machine": machine(scene),
+    }
 
 
 def machine(scene: Scene) -> dict[str, object]:

@@ -18,7 +18,6 @@ from courseware.simulation.room.measurement_places import MEASUREMENT_PLACES
 from courseware.simulation.room.stereo_recording import read_stereo_recording
 from courseware.simulation.room.survey import RoomSurveyModel
 from courseware.simulation.sensors.laser_survey import ScannerModel
-from tools.training_images import make_room_images, read_image_list
 
 SMALL = RoomModels(width=320, places=(3,), survey=RoomSurveyModel(places=3, width=320, fewest_pixels=10))
 
@@ -53,23 +52,6 @@ def test_one_seed_gives_the_same_bytes_and_says_where_each_pair_and_object_was(s
     errors = np.linalg.norm(semantic_map.positions - true, axis=1)
     assert 0 < errors.max() < 0.05
     np.testing.assert_allclose(semantic_map.walls, room.walls)
-
-
-@pytest.mark.slow
-def test_training_pictures_go_on_where_they_stopped(tmp_path):
-    make_room_images(tmp_path / "stopped", 5, 1, 1)
-    images = make_room_images(tmp_path / "stopped", 5, 2, 1)
-    again = make_room_images(tmp_path / "at_once", 5, 2, 1)
-    assert images == again == read_image_list(tmp_path / "at_once")
-    for image in images:
-        one, other = (tmp_path / name / image["file"] for name in ("stopped", "at_once"))
-        assert one.read_bytes() == other.read_bytes()
-        assert len(image["objects"]) >= 3
-        for thing in image["objects"]:
-            u_min, v_min, u_max, v_max = thing["visible_box"]
-            assert 0 <= u_min < 1280
-            assert u_min < u_max <= u_min + 1280
-            assert 0 <= v_min < v_max <= 640
 
 
 FINALE_SEED = 10_001
