@@ -63,7 +63,7 @@ from course_lib.rendering.renderer import DepthRenderer
 SURE = np.array([0.06, np.deg2rad(3.0)])  # metres, radians: a cloud so small needs few particles
 NOTHING_BEHIND = 0.01  # share of pixels behind the map: with at most this, a pose that the motion confirms is settled
 CLEAR = 0.05  # share of pixels behind the map: with more, the camera may as well be where it was predicted
-SEEN = 0.06  # of raw score: the most that a move along directions that the image does not show may cost
+SEEN = 0.06  # of raw score (alpha = 0.1 m): the most that moving along directions that no image shows may cost
 IMAGE_FIRST = 4  # times the image's information moves the pose: motions' errors add up, the map's errors do not
 CHECKED = 3  # every third tracked frame checks the intrinsics, which saves time
 
@@ -71,18 +71,18 @@ CHECKED = 3  # every third tracked frame checks the intrinsics, which saves time
 class AnnealedEstimate(NamedTuple):
     """The estimate of one frame: `Estimate`'s fields, and how it was reached."""
 
-    state: np.ndarray  # `(6,)` the best refined pose.
-    covariance: np.ndarray  # `(6, 6)` of the last particles, metres in world axes, radians in body axes.
-    score: float  # Raw score of the refined pose: eq. (8) as a mean over pixels of the finest image.
-    ess: float  # Effective sample size of the last layer's weights.
-    particles: np.ndarray  # `(N, 6)` of the last layer.
-    weights: np.ndarray  # `(N,)` of these particles.
+    state: np.ndarray  # `(6,)` the best refined pose
+    covariance: np.ndarray  # `(6, 6)` of the last particles, metres in world axes, radians in body axes
+    score: float  # raw score of the refined pose: eq. (8) as a mean over pixels of the finest image
+    ess: float  # effective sample size of the last layer's weights
+    particles: np.ndarray  # `(N, 6)` of the last layer
+    weights: np.ndarray  # `(N,)` of these particles
     status: TrackStatus  # what being_lost.py says of the state
     error_covariance: np.ndarray  # `(6, 6)`, the same units and axes: of the error to expect while "tracked"
-    agreement: Agreement  # How the measured image agrees with the map as seen from the state.
-    layers: tuple[Tempered, ...]  # Weights, sharpness and effective sample size of every layer, in order.
-    renders: int  # How many images were rendered for this frame.
-    calibration: Calibration  # The camera's intrinsics by the tracked images so far.
+    agreement: Agreement  # how the measured image agrees with the map as seen from the state
+    layers: tuple[Tempered, ...]  # weights, sharpness and effective sample size of every layer, in order
+    renders: int  # how many images were rendered for this frame
+    calibration: Calibration  # the camera's intrinsics by the tracked images so far
 
 
 class Decision(NamedTuple):
@@ -104,7 +104,7 @@ class AnnealedLocalizer:
     first pose. image_motion: whether two images measure the motion. Raises `ValueError` for bad numbers, or no layer.
     """
 
-    takes = frozenset({"increment"})  # what `step` can use beside the image
+    takes = frozenset({"increment"})  # what `step` can use in addition to the image
 
     def __init__(
         self,

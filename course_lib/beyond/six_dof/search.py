@@ -26,7 +26,7 @@ from course_lib.depth_mcl.uncertainty import Tempered, temper
 APART = 0.2  # of the cloud's spread: refinement brings two particles that are nearer than this to the same pose
 DISTINCT = np.array([0.02, np.deg2rad(1.0)])  # metres, radians: two refined poses that are nearer are the same
 RIVAL_APART = np.array([0.15, np.deg2rad(10.0)])  # metres, radians: a nearer pose is no other place, only less exact
-RIVAL_WITHIN = 0.06  # of merit: a pose that is worse by more than this is no rival of the best one
+RIVAL_WITHIN = 0.06  # of merit (alpha = 0.1 m): a pose that is worse by more than this is no rival of the best one
 
 
 class Cloud(NamedTuple):
