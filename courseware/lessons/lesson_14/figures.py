@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Polygon
 
+from course_lib.spherical_stereo.outcomes import ObjectOutcome
 from course_lib.spherical_stereo.panorama import direction_from_angles
 from course_lib.spherical_stereo.ranging import triangulation
 from course_lib.spherical_stereo.semantic_map.semantic_map import SemanticMap
@@ -90,7 +91,7 @@ def sampled_places(point: np.ndarray, baseline: float, sigma: float) -> tuple[np
     """Return places `(k, 3)` [m] of the noisy directions that have one, and the outcomes `(400,)` of all."""
     upper, lower = noisy_directions(point, baseline, sigma)
     outcomes = triangulation.triangulation_outcome(upper, lower)
-    ok = outcomes == triangulation.OK
+    ok = outcomes == ObjectOutcome.OK
     return triangulation.object_position(upper[ok], lower[ok], baseline) if ok.any() else np.zeros((0, 3)), outcomes
 
 
@@ -201,7 +202,7 @@ def triangulation_panel() -> Panel:
         outline.set_data(*ellipse(covariance[:2, :2], np.array([x, y])).T[::-1])
         parallax = np.diff([np.arcsin(v[2]) for v in (upper, lower)])[0] / PIXEL
         place = f"d {d:.2f} m, horizontal range {rho:.2f} m, parallax e_l - e_u {parallax:.1f} pixels"
-        lost = f"no distance (parallel or diverging): {(outcomes != triangulation.OK).mean():.0%} of the measurements"
+        lost = f"no distance (parallel or diverging): {(outcomes != ObjectOutcome.OK).mean():.0%} of the measurements"
         errors = f"sigma along the ray {along_sigma:.2f} m, across {across_sigma:.3f} m; {lost}"
         alt = f"Two rays from the side and the error ellipse from above. {place} {errors}"
         return Drawing(live.png(), alt, f"{place}\n{errors}")

@@ -8,6 +8,7 @@ import numpy as np
 
 from course_lib.spherical_stereo.detection.detected_object import Detection, box_centre, wrapped_box
 from course_lib.spherical_stereo.matching.object_matching import match_views
+from course_lib.spherical_stereo.outcomes import ObjectOutcome
 from course_lib.spherical_stereo.panorama import direction_from_angles, pixel_to_direction
 from course_lib.spherical_stereo.pose.rigid_fit import rotation_2d
 from course_lib.spherical_stereo.ranging import triangulation
@@ -63,7 +64,7 @@ def places_in_space(recording: StereoRecording, name: str, sigma: float) -> Plac
 def box_range(boxes: Sequence[Sequence[float]], baseline: float, size: tuple[int, int]) -> float:
     """Return the horizontal range [m] from the centres of two boxes, upper first; NaN if they give none."""
     rays = [pixel_to_direction(box_centre(np.asarray(box)), *size) for box in boxes]
-    if triangulation.triangulation_outcome(*rays) != triangulation.OK:
+    if triangulation.triangulation_outcome(*rays) != ObjectOutcome.OK:
         return float("nan")
     return float(np.linalg.norm(triangulation.object_position(*rays, baseline)[:2]))
 
