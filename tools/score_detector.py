@@ -95,7 +95,7 @@ def photographs(seed: int) -> Iterator[tuple[np.ndarray, list[TrueObject]]]:
             state, _ = rig.camera_states()
             path = folder / "photograph.jpg"
             panorama_rig.write_photograph(path, renderer.render(state), CAMERA, rng)
-            yield read_panorama(path), [true_object(entry) for entry in box_entries(renderer, state)]
+            yield read_panorama(path).image, [true_object(entry) for entry in box_entries(renderer, state)]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
