@@ -1,5 +1,6 @@
 """All pages: their links, commands and minutes are right, they name one version and what there is."""
 
+import ast
 import json
 import re
 from importlib import import_module
@@ -127,3 +128,19 @@ def test_the_workflow_calls_the_two_commands_on_three_systems_and_two_pythons():
     matrix = job["strategy"]["matrix"]
     assert {system.split("-")[0] for system in matrix["os"]} == {"ubuntu", "macos", "windows"}
     assert matrix["python"] == ["3.11", "3.13"]
+
+
+VERBS = set(
+    "Check Compare Compile Draw Fill Fit Free Go Join Keep Localize Match Pair Put Raise Read Return Sample Say "
+    "Silence Start Take Turn Write Yield".split()
+)
+
+
+def test_docstrings_of_public_functions_of_course_lib_begin_with_a_verb_as_contributing_says():
+    """A verb that is not among VERBS is added there."""
+    found = {}
+    for path in sorted((ROOT / "course_lib").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.FunctionDef) and not node.name.startswith("_") and ast.get_docstring(node):
+                found[f"{path.relative_to(ROOT)}: {node.name}"] = ast.get_docstring(node).split()[0]
+    assert {name: word for name, word in found.items() if word not in VERBS} == {}

@@ -45,7 +45,7 @@ class ForgivingCache(FunctionCache):
 
 @contextlib.contextmanager
 def announced_compiling() -> Iterator[None]:
-    """Within the block, say once that compiling begins: to the user of a terminal as a warning, else to the log."""
+    """Say once when compiling begins in the block: to the user of a terminal as a warning, else to the log."""
     with event.install_listener("numba:compile", _Announcement()):
         yield
 
