@@ -18,8 +18,8 @@ from course_lib.rendering.compiled import compiled
 # Metres, paper 1, section 4. No status follows it: their limits have `status.AGREES_WITHIN`. Another default shifts the
 # raw scores, so choose these again: `uncertainty.INDEPENDENT_PIXELS`, `simplification.TOLERANCE`, and, in the annealed
 # filter, which scores with the default, `SEEN` and `RIVAL_WITHIN`. Then compute again: lessons 00, 06 to 10, 19 and 20,
-# project P1 (its rivals and data/projects/P1.json), data/*/results and the tables of RESULTS.md. Lessons 00, 04 and 06
-# write 0.1 m into their text.
+# project P1 (its rivals and courseware/answers/project_1.json), data/*/results and the tables of RESULTS.md. Lessons
+# 00, 04 and 06 write 0.1 m into their text.
 ALPHA = 0.1
 BETA = 0.01  # no unit (a normalized likelihood), paper 1, section 4
 MAX_DEPTH = 100.0  # metres, which no depth camera reaches. A larger value means millimetres: 10 cm reads as 100

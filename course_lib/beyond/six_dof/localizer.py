@@ -185,7 +185,7 @@ class AnnealedLocalizer:
             views = self._views if measured is None else None
             cloud = Cloud(prediction, prediction.spread(measured), measured)
             decision = self._predicted_only(cloud)
-            status, error_covariance = "no measurement", decision.covariance
+            status, error_covariance = decision.image_says, decision.covariance
         found = decision.found
         if decision.is_found:
             prediction.found(found.pose, decision.shows_all, found.rivals)
@@ -284,7 +284,7 @@ class AnnealedLocalizer:
         covariance = self._predicted_covariance(local(prediction.pose, pose), cloud)
         layers = (temper(np.zeros(len(particles)), len(particles)),)
         found = Found(pose, np.nan, NOTHING_MEASURED, particles, layers, ())
-        return Decision(found, covariance, "doubtful", False, False)
+        return Decision(found, covariance, "no measurement", False, False)
 
     def _calibrated(self, decision: Decision, status: TrackStatus) -> np.ndarray:
         """Return the covariance `(6, 6)`, wider where the intrinsics are doubted; check them with some tracked frames.
@@ -304,7 +304,7 @@ class AnnealedLocalizer:
             return decision.covariance
         return decision.covariance + self._calibration.pose_covariance(*images)
 
-    def _estimate(self, found: Found, status: str, error_covariance: np.ndarray) -> AnnealedEstimate:
+    def _estimate(self, found: Found, status: TrackStatus, error_covariance: np.ndarray) -> AnnealedEstimate:
         state, particles = state_from_optical_pose(found.pose), state_from_optical_pose(found.particles)
         last = found.layers[-1]
         deviations = self.motion.deviations(particles, state)
