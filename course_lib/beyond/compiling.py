@@ -8,12 +8,10 @@ from course_lib.beyond.six_dof.image_motion import View, compiled_motion_equatio
 from course_lib.beyond.six_dof.refinement import compiled_normal_equations
 from course_lib.depth_mcl.likelihood import compiled_likelihood
 from course_lib.rendering.camera import DepthCamera
-from course_lib.rendering.compiled import announced_compiling
 from course_lib.rendering.renderer import DepthRenderer
 from course_lib.rendering.scene_map import SceneMap
 
 
-@announced_compiling()
 def warm_up() -> None:
     """Compile every loop of the filters and the search now: render an image, weigh it, refine by it, and look it up.
 

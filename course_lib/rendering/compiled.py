@@ -3,11 +3,13 @@
 import contextlib
 import logging
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 from numba import njit
 from numba.core import event
 from numba.core.caching import FunctionCache
+
+COMPILED: set[Callable] = set()  # the functions below, so that other people's compiled functions are not announced
 
 
 def compiled(fastmath: bool | set[str] = True) -> Callable[[Callable], Callable]:
@@ -17,6 +19,7 @@ def compiled(fastmath: bool | set[str] = True) -> Callable[[Callable], Callable]
     """
 
     def decorate(function: Callable) -> Callable:
+        COMPILED.add(function)
         fast = njit(nogil=True, fastmath=fastmath)(function)
         with contextlib.suppress(RuntimeError):  # Numba has no folder to keep code in
             fast._cache = ForgivingCache(function)
@@ -43,24 +46,24 @@ class ForgivingCache(FunctionCache):
             super().save_overload(*signature_and_code)
 
 
-@contextlib.contextmanager
-def announced_compiling() -> Iterator[None]:
-    """Say once when compiling begins in the block: to the user of a terminal as a warning, else to the log."""
-    with event.install_listener("numba:compile", _Announcement()):
-        yield
-
-
 class _Announcement(event.Listener):
-    """Numba's event "numba:compile" begins only where no compiled code was kept."""
+    """Says once that this process compiles loops of this library, which takes seconds (`beyond.warm_up` does it early).
+
+    Numba's event "numba:compile" begins only where no compiled code was kept.
+    """
 
     def __init__(self) -> None:
         self._is_made = False
 
-    def on_start(self, event: object) -> None:
-        if not self._is_made:
+    def on_start(self, event: event.Event) -> None:
+        """Say it to the user of a terminal as a warning, else to the log."""
+        if not self._is_made and event.data["dispatcher"].py_func in COMPILED:
             level = logging.WARNING if sys.stderr.isatty() else logging.INFO
             logging.getLogger("course_lib").log(level, "compiling loops for this computer: this takes some seconds")
-        self._is_made = True
+            self._is_made = True
 
-    def on_end(self, event: object) -> None:
+    def on_end(self, event: event.Event) -> None:
         """Say nothing: the call that follows shows that compiling has ended."""
+
+
+event.register("numba:compile", _Announcement())
