@@ -3,6 +3,7 @@
 import ast
 import json
 import re
+from fnmatch import fnmatch
 from importlib import import_module
 from pathlib import Path
 
@@ -52,6 +53,15 @@ def test_the_architecture_names_every_package():
     packages = {path.parent.name for path in ROOT.glob("course*/*/__init__.py")}
     picture = page.partition("    tools ")[2].partition("`course.py` uses")[0]
     assert {name for name in packages if not re.search(rf"\b{name}\b", picture)} == set()
+
+
+@pytest.mark.parametrize("package", ["depth_mcl", "spherical_stereo", "rendering", "beyond", "beyond/six_dof"])
+def test_a_methods_init_lists_its_modules_as_the_architecture_says(package):
+    folder = ROOT / "course_lib" / package
+    listed = re.findall(r"\w+\*?", ast.get_docstring(ast.parse((folder / "__init__.py").read_text(encoding="utf-8"))))
+    modules = {path.stem for path in folder.glob("*.py")} | {path.parent.name for path in folder.glob("*/__init__.py")}
+    missing = {name for name in modules - {"__init__"} if not any(fnmatch(name, one) for one in listed)}
+    assert missing == set(), f"course_lib/{package}/__init__.py lists its parts; add these"
 
 
 def anchors(page):

@@ -12,6 +12,7 @@ from courseware.lessons.kit.exercises import find_exercise, judge, lesson_exerci
 from courseware.lessons.kit.mistakes import read_hints
 from courseware.paths import REPOSITORY, foundation_paths, notebook_paths, project_paths
 from tests.notebooks.conftest import read
+from tests.notebooks.test_pace import HINTS
 from tools.bench_tables import capacity_sentence, lessons_rows
 from tools.refresh import solution_cell, stub_cell, with_example
 
@@ -65,12 +66,16 @@ def test_the_minutes_of_a_plan_add_up_and_it_has_each_lesson_once_and_in_order(p
     left_out = re.search(r"^Left out: ([\d, ]+)\.", section(plan), re.M)
     if left_out or count == "Fifteen":
         missing = left_out[1].split(", ") if left_out else []
-        assert sorted(lessons + missing) == [path.name[:2] for path in notebook_paths()]
+        in_series = [path.name[:2] for path in notebook_paths()]
+        assert sorted(lessons + missing) == in_series, (
+            "section 2: the plan has each lesson, or says that it leaves it out"
+        )
 
 
 @pytest.mark.parametrize("number", [*PATHS, *FOUNDATIONS])
 def test_every_lesson_foundation_and_project_has_its_entry_with_its_time_and_a_question(number):
     heading = re.search(rf"^### {number} · .* \(([\d.]+) (min|h)\)$", TEACHING, re.M)
+    assert heading, "section 3 lacks its entry"
     assert float(heading[1]) * (60 if heading[2] == "h" else 1) == minutes_of(number)
     entry = section(f"{number} · ")
     assert re.findall(r"^\* \*\*(\w+)\.\*\*", entry, re.M) == PARTS
@@ -90,7 +95,8 @@ def test_points_are_those_of_the_exercises():
     assert set(points) == {"warm-up", "core", "challenge"}
     sums = {path.name[:2]: [points[e.level] for e in lesson_exercises(path.name[:2])] for path in notebook_paths()}
     told = re.search(r"(\d+) lessons have (\d+) exercises, (\d+) points", TEACHING).groups()
-    assert [int(n) for n in told] == [len(sums), sum(map(len, sums.values())), sum(map(sum, sums.values()))]
+    counted = [len(sums), sum(map(len, sums.values())), sum(map(sum, sums.values()))]
+    assert [int(n) for n in told] == counted, "section 5: lessons, exercises and points"
 
 
 COSTS = re.search(r"<!-- costs: measured on \S+, \d+ processors, by (.*?) -->\n(.*?)<!-- end", TEACHING, re.S)
@@ -100,7 +106,7 @@ def test_the_costs_have_a_row_for_every_lesson_and_project_and_say_where_from():
     assert COSTS[1] == ".venv/bin/python -m tools.bench --lessons"
     lines = re.findall(r"^\|.*$", COSTS[2], re.M)
     _, _, *rows, greatest, together, server = cells_of(lines)
-    assert [row[0] for row in rows] == list(PATHS)
+    assert [row[0] for row in rows] == list(PATHS), "section 1: run `python -m tools.bench --lessons NN`, add its row"
     numbers = np.array([[float(cell) for cell in row[1:]] for row in rows])
     assert (numbers[:, 1] < numbers[:, 0]).all(), "the student's own memory is a part of all"
     assert [float(cell) for cell in greatest[1:]] == numbers.max(axis=0).tolist()
@@ -139,4 +145,5 @@ def test_the_example_exercise_is_one(tmp_path):
     for mistake in exercise.known:
         assert mistake.hint in judge(exercise, mistake.functions[0]).message
     assert f'check("{exercise.number}", greatest_depth)' in cells[2]
+    assert cells[3].count("<details>") == HINTS[0]
     assert cells[0] == with_example(cells[0], exercise)

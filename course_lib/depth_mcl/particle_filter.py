@@ -1,7 +1,7 @@
 """The particle filter's steps that know nothing of images or motion (paper 1, sections 3.1, 3.4): the start and A-3.
 
 Particles are an array `(N, 6)` of states [x, y, z, roll, pitch, yaw], eqs (1) and (2). Every function is pure: arrays
-and a `numpy.random.Generator` in, arrays out. All four resampling schemes share one signature.
+and a `numpy.random.Generator` in, arrays out. All resampling schemes share one signature.
 """
 
 from typing import Literal, get_args

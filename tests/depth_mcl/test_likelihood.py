@@ -31,7 +31,7 @@ finite_likelihoods = arrays(float, st.integers(1, 60), elements=st.floats(-1e6, 
 
 
 def test_alpha_and_beta_are_the_papers():
-    assert (ALPHA, BETA) == (0.1, 0.01)
+    assert (ALPHA, BETA) == (0.1, 0.01), "what follows alpha: CONTRIBUTING.md, 'Another default of alpha'"
 
 
 @pytest.fixture(params=[likelihood, compiled_likelihood], ids=["eq. (8) as one reads it", "its compiled twin"])

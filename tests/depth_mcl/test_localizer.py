@@ -8,7 +8,15 @@ import pytest
 
 from course_lib.depth_mcl.evaluation import PAPER_TABLE_1, nearest_path_error, pose_errors, timed_error
 from course_lib.depth_mcl.fallon import fallon_weighting
-from course_lib.depth_mcl.likelihood import DepthImageError, likelihood, normalize_likelihood, paper_weighting, weights
+from course_lib.depth_mcl.likelihood import (
+    ALPHA,
+    BETA,
+    DepthImageError,
+    likelihood,
+    normalize_likelihood,
+    paper_weighting,
+    weights,
+)
 from course_lib.depth_mcl.localizer import MonteCarloLocalizer, NoMeasurementWarning, SlowFilterWarning
 from course_lib.depth_mcl.motion import BODY_AXES, TANGENT_SPACE, WORLD_AXES, propagate
 from course_lib.depth_mcl.particle_filter import Scheme, initial_particles, resample, weighted_mean_state
@@ -244,7 +252,7 @@ def test_what_cannot_be_a_setting_a_start_or_a_frame_is_named(renderer):
     for name, value in (*bad.items(), ("resampling", "lottery"), ("weighting", likelihood)):
         with pytest.raises(ValueError, match=rf"{name} must|sigma needs|scheme must"):
             MonteCarloLocalizer(renderer, **{name: value})
-    for setting in ({"alpha": 0.2}, {"beta": 0.02}):
+    for setting in ({"alpha": 2 * ALPHA}, {"beta": 2 * BETA}):
         with pytest.raises(ValueError, match="leave them out"):
             MonteCarloLocalizer(renderer, weighting=paper_weighting(), **setting)
     localizer = MonteCarloLocalizer(renderer, 10, SIGMA)

