@@ -38,7 +38,7 @@ THROUGH_WEIGHT = 3.0  # a pixel behind the map counts as much against a refined 
 KNOWN = np.array([0.2, np.deg2rad(20.0)]) + 1e-9
 # A filter with more than three free components makes wrong poses fit, too. So it is tracked only if the frame itself
 # has `RECOVERED_SUPPORT`, and the position is known to this, metres. The limit was chosen on the frames on which it is
-# counted here, and not counted on fresh ones, so the counts flatter: with 100 and 200 particles on the shipped corridor,
+# counted here, and not on fresh ones, so the counts flatter. With 100 and 200 particles on the shipped corridor,
 # a real Kinect's kitchen and a small furnished room, none of 811 frames that are wrong by more than 0.2 m or 20 degrees
 # is tracked, and 20 of 27 within 5 cm and 5 degrees are.
 KNOWN_OF_MORE = 0.08
